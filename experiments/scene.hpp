@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/initial.hpp"
+#include "model/system.hpp"
+
+namespace driftless {
+
+/// How velocities and internal energies start.
+enum class InitialState { microcanonical, rest, given };
+
+/// What is simulated: the fluid, how much of it, and how it starts. All in program units.
+struct Scene {
+  std::string name;    ///< unique within a study
+  std::string preset;  ///< the preset it was made from
+  FluidParameters fluid;
+  Layout layout = Layout::fluid;
+  std::size_t particles = 1000;
+  double density = 1;  ///< number density; unused by `pairs`
+  bool frozen = false;
+  double pair_distance = 0.5;  ///< `pairs` alone
+  Vector frame_velocity = Vector::Zero();
+  InitialState initial_state = InitialState::microcanonical;
+  Placement initial_positions = Placement::random;
+  double initial_temperature = 1;        ///< of the internal energies, for `rest` and `given`
+  double initial_velocity_spread = 0;    ///< per component, for `given`
+  std::vector<Vector> initial_velocities;  ///< one per particle, for `given`; overrides the spread
+};
+
+/// A named scene with what it is for.
+struct Preset {
+  std::string_view name;
+  std::string_view title;
+  std::string_view source;  ///< paper and section
+  Scene scene;
+};
+
+/// mackie-1999, soft-fluid, two-body.
+const std::vector<Preset>& presets();
+
+/// Predicted relaxation time of internal energies (derived: friction at rate rho zeta_0 [w]/(2 m a),
+/// conduction at rate rho L_0 [w]/(phi T^2), [w] the volume integral of the weight; for `pairs` the
+/// rates at the pair's distance). Infinite if nothing acts.
+double relaxation_time(const Scene& scene);
+
+/// Predicted decay time of the slowest temperature wave of the box, 1/((kappa + D) k^2) with the
+/// published conductivity and diffusion of the ideal fluid; 0 for `pairs` and frozen systems without
+/// conduction.
+double wave_time(const Scene& scene);
+
+}  // namespace driftless

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cmath>
+
+#include "model/system.hpp"
+
+/// The pieces that methods share, in the notation of the papers: a pair's exchange over dt.
+namespace driftless {
+
+/// Explicit Euler-Maruyama exchange of friction and its noise, second-order terms averaged:
+/// f = -(zeta + induced) v dt + Gamma dt^{1/2} W, and each internal energy receives half of
+/// (zeta + induced) v^2 dt - Gamma^2 dt/(2 mu) - v Gamma dt^{1/2} W.
+template <class V>
+Transfer<V> euler_friction(const Fluid& fluid, const Pair<V>& pair, double dt) {
+  using std::sqrt;
+  const auto law = fluid.friction(pair);
+  const V drag = (law.friction + law.induced) * pair.v * dt;
+  const V kick = sqrt(law.noise_squared * dt) * pair.noise;
+  const V heat =
+      0.5 * (pair.v * (drag - kick) - law.noise_squared * dt / (2 * fluid.reduced_mass()));
+  return {kick - drag, heat, heat};
+}
+
+/// Explicit Euler-Maruyama exchange of heat: i receives q, j gives it,
+/// q = (lambda (theta_j - theta_i) + induced) dt + Lambda dt^{1/2} W_q.
+template <class V>
+Transfer<V> euler_conduction(const Fluid& fluid, const Pair<V>& pair, double dt) {
+  using std::sqrt;
+  const auto law = fluid.conduction(pair);
+  const V heat = (law.rate + law.induced) * dt + sqrt(law.noise_squared * dt) * pair.heat_noise;
+  return {V(0), heat, -heat};
+}
+
+/// Every exchange of a pair over dt from the state as it stands, conservative force included; what
+/// the fluid does not have costs nothing.
+template <class V>
+Transfer<V> euler_exchange(const Fluid& fluid, const Pair<V>& pair, double dt) {
+  Transfer<V> total;
+  if (fluid.has_repulsion()) total.momentum += fluid.repulsive_force(pair.r) * dt;
+  if (fluid.has_friction()) total += euler_friction(fluid, pair, dt);
+  if (fluid.has_conduction()) total += euler_conduction(fluid, pair, dt);
+  return total;
+}
+
+/// Euler-Maruyama for all pairs from the state at t, with the Euler move r' = r + v dt.
+inline void euler_maruyama_step(System& system, double dt, Exchange& exchange) {
+  const Fluid& fluid = system.fluid();
+  system.accumulate([&](const auto& pair) { return euler_exchange(fluid, pair, dt); }, exchange);
+  system.move(dt);
+  system.apply(exchange);
+}
+
+/// The pair as it stands after an exchange, for the next flow of the same pair.
+template <class V>
+Pair<V> after(const Fluid& fluid, Pair<V> pair, const Transfer<V>& transfer) {
+  pair.v += transfer.momentum / fluid.reduced_mass();
+  pair.u_i += transfer.energy_i;
+  pair.u_j += transfer.energy_j;
+  return pair;
+}
+
+/// Velocity Verlet with the conservative forces alone.
+inline void velocity_verlet(System& system, double dt) {
+  system.kick(dt / 2);
+  system.move(dt);
+  system.kick(dt / 2);
+}
+
+}  // namespace driftless

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "model/system.hpp"
+
+namespace driftless {
+
+/// Value of a method's option, as written in a study.
+using OptionValue = std::variant<bool, double, std::string>;
+using Options = std::map<std::string, OptionValue>;
+
+/// An option that a method declares: its default tells the type.
+struct OptionSpec {
+  std::string_view name;
+  OptionValue fallback;
+  std::string_view meaning;
+};
+
+/// Steps a system through time. Forces, heat, noise and pairs come from the System; what is here is
+/// the scheme alone.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  /// One step of size dt >= 0. Throws StepFailure; the system is then left as it was found failing.
+  virtual void step(System& system, double dt) = 0;
+
+  /// What the scheme keeps between steps, for a checkpoint; empty if nothing.
+  virtual std::vector<double> save() const { return {}; }
+  virtual void load(const std::vector<double>& /*saved*/) {}
+};
+
+/// What a method promises of total energy, per step and in the mean; the suites hold it to it.
+enum class EnergyClaim { exact, drifts };
+
+/// A method and what it claims. Claims may be `false`: the suites check those too.
+struct Method {
+  std::string_view name;       ///< as in studies and results
+  std::string_view title;      ///< for people
+  std::string_view reference;  ///< paper and equations
+  std::string_view conserves;  ///< in words
+  int weak_order = 1;          ///< of stationary averages of the ideal system
+  int noise_free_order = 1;    ///< towards the deterministic limit, without a potential
+  EnergyClaim energy_ideal = EnergyClaim::drifts;           ///< without a potential
+  EnergyClaim energy_with_potential = EnergyClaim::drifts;  ///< with one
+  bool consistent = true;         ///< its limit of vanishing step is the model of theory
+  bool galilean = true;           ///< a uniform velocity changes nothing
+  bool order_independent = true;  ///< no order of pairs enters
+  std::vector<FrictionClosure> closures = {};
+  std::vector<OptionSpec> options = {};
+  std::unique_ptr<Integrator> (*make)(const Options&) = nullptr;
+};
+
+/// Every registered method, in the order of registry.cpp, then of register_method calls.
+const std::vector<const Method*>& methods();
+/// The method of a name, or nullptr.
+const Method* find_method(std::string_view name);
+/// Adds a method from outside the library; throws std::invalid_argument if the name is taken.
+void register_method(const Method& method);
+
+/// Why the method cannot run the fluid, in one sentence; nothing if it can.
+std::optional<std::string> refusal(const Method& method, const Fluid& fluid);
+
+/// The value of an option, or its default. T is bool, double or std::string.
+template <class T>
+T option(const Method& method, const Options& options, std::string_view name) {
+  if (const auto given = options.find(std::string(name)); given != options.end()) {
+    return std::get<T>(given->second);
+  }
+  for (const auto& spec : method.options) {
+    if (spec.name == name) return std::get<T>(spec.fallback);
+  }
+  throw std::logic_error("a method asked for an option that it does not declare");
+}
+
+/// "noise" or "friction"; "none", "inverse-temperature" or "temperature".
+std::string_view to_string(FrictionClosure closure);
+std::string_view to_string(HeatForm form);
+
+}  // namespace driftless

@@ -1,0 +1,155 @@
+#pragma once
+
+#include <cmath>
+
+#include "model/pair.hpp"
+
+namespace driftless {
+
+/// Which of the two friction coefficients depends on the distance alone (theory of the closures:
+/// Espanol 1997 for `noise`, Mackie, Bonet Avalos and Navas 1999, eq. 3.23, for `friction`).
+enum class FrictionClosure { noise, friction };
+
+/// Which heat coefficient depends on the distance alone: L of eq. 3.24 of Mackie et al. 1999
+/// (`inverse_temperature`, flux L (1/theta_i - 1/theta_j)) or the conductivity lambda of Ripoll and
+/// Ernst 2005 (`temperature`, flux lambda (theta_i - theta_j)).
+enum class HeatForm { none, inverse_temperature, temperature };
+
+/// Parameters of one species of DPDE particles, all in program units.
+struct FluidParameters {
+  double boltzmann = 1;      ///< Boltzmann's constant k >= 0; 0 switches every fluctuation off
+  double mass = 1;           ///< particle mass m > 0
+  double temperature = 1;    ///< reference temperature T > 0 at which `friction` is quoted
+  double heat_capacity = 1;  ///< phi = du/dtheta > 0 of one particle (s = phi ln u)
+  double repulsion = 0;      ///< a of psi = (a r_c/2)(1 - r/r_c)^2 (Groot and Warren 1997)
+  double repulsion_range = 1;
+  double friction = 0;  ///< zeta_0 at temperature T, for either closure
+  FrictionClosure friction_closure = FrictionClosure::noise;
+  double friction_range = 1;
+  double conduction = 0;  ///< L_0 for `inverse_temperature`, lambda_0 for `temperature`
+  HeatForm heat_form = HeatForm::none;
+  double heat_range = 1;
+  double weight_exponent = 2;  ///< s of w(r) = (1 - r/r_c)^s, for friction and heat
+
+  bool has_repulsion() const { return repulsion != 0; }
+  bool has_friction() const { return friction != 0; }
+  bool has_conduction() const { return heat_form != HeatForm::none && conduction != 0; }
+  bool operator==(const FluidParameters&) const = default;
+};
+
+/// Friction of one pair: momentum transfer -zeta v dt + Gamma dW along the pair's direction.
+template <class V>
+struct FrictionLaw {
+  V friction;       ///< zeta
+  V noise_squared;  ///< Gamma^2 = 2 k zeta Theta (Mackie et al. 1999, eq. 2.37)
+  V induced;        ///< (1/4)(d/du_i + d/du_j) Gamma^2, the noise-induced friction
+};
+
+/// Conduction of one pair: heat lambda (theta_j - theta_i) dt + Lambda dW from j to i.
+template <class V>
+struct ConductionLaw {
+  V rate;           ///< lambda (theta_j - theta_i)
+  V noise_squared;  ///< Lambda^2 = 2 k lambda theta_i theta_j (Mackie et al. 1999, eq. 2.38)
+  V induced;        ///< (1/2)(d/du_i - d/du_j) Lambda^2, the noise-induced heat rate
+};
+
+/// The constitutive laws: what a pair exchanges per unit time, as functions of what the pair sees.
+/// Every function is pure and generic in V (double or a vector of lanes).
+class Fluid {
+ public:
+  /// Throws std::invalid_argument naming the parameter, its value and the allowed range.
+  explicit Fluid(const FluidParameters& parameters);
+
+  const FluidParameters& parameters() const { return parameters_; }
+  bool has_repulsion() const { return parameters_.has_repulsion(); }
+  bool has_friction() const { return parameters_.has_friction(); }
+  bool has_conduction() const { return parameters_.has_conduction(); }
+  bool fluctuates() const { return parameters_.boltzmann > 0; }
+  double boltzmann() const { return parameters_.boltzmann; }
+  double mass() const { return parameters_.mass; }
+  double reduced_mass() const { return parameters_.mass / 2; }
+
+  /// The largest range of the terms that act; 0 if none does.
+  double range() const;
+
+  /// theta(u) = u/phi, temperature of a particle (ds/du = 1/theta).
+  template <class V>
+  V temperature(V internal_energy) const {
+    return internal_energy * inverse_heat_capacity_;
+  }
+  /// c(u) = du/dtheta.
+  template <class V>
+  V heat_capacity(V /*internal_energy*/) const {
+    return V(parameters_.heat_capacity);
+  }
+  /// s(u) = phi ln u, up to a constant.
+  double entropy(double internal_energy) const {
+    return parameters_.heat_capacity * std::log(internal_energy);
+  }
+  /// u(theta), the inverse of temperature().
+  double internal_energy(double temperature) const {
+    return parameters_.heat_capacity * temperature;
+  }
+
+  double friction_weight(double distance) const {
+    return weight(distance, parameters_.friction_range);
+  }
+  double heat_weight(double distance) const { return weight(distance, parameters_.heat_range); }
+
+  /// Repulsive force on i along e at distance r: a (1 - r/r_c) inside the range.
+  double repulsive_force(double distance) const {
+    const double x = 1 - distance / parameters_.repulsion_range;
+    return x > 0 ? parameters_.repulsion * x : 0;
+  }
+  /// psi(r) = (a r_c/2)(1 - r/r_c)^2 inside the range.
+  double potential(double distance) const {
+    const double x = 1 - distance / parameters_.repulsion_range;
+    return x > 0 ? 0.5 * parameters_.repulsion * parameters_.repulsion_range * x * x : 0;
+  }
+  /// psi''(r) + 2 psi'(r)/r, the Laplacian of psi with respect to one particle's position.
+  double potential_laplacian(double distance) const;
+
+  /// The friction law of a pair in its present state; zeta is constant in the energies for the
+  /// closure `friction`, Gamma for the closure `noise`, where nothing is noise-induced.
+  template <class V>
+  FrictionLaw<V> friction(const Pair<V>& pair) const {
+    const auto& f = parameters_;
+    const V theta_i = temperature(pair.u_i), theta_j = temperature(pair.u_j);
+    const V mean = 2 * theta_i * theta_j / (theta_i + theta_j);  // Theta, Mackie et al. 2.37
+    const V zeta_0 = f.friction * pair.w_friction;
+    if (f.friction_closure == FrictionClosure::noise) {
+      return {zeta_0 * f.temperature / mean, 2 * f.boltzmann * zeta_0 * f.temperature, V(0)};
+    }
+    const V slope = mean * mean *
+                    (1 / (heat_capacity(pair.u_i) * theta_i * theta_i) +
+                     1 / (heat_capacity(pair.u_j) * theta_j * theta_j));
+    return {zeta_0, 2 * f.boltzmann * zeta_0 * mean, 0.25 * f.boltzmann * zeta_0 * slope};
+  }
+
+  /// The conduction law of a pair in its present state.
+  template <class V>
+  ConductionLaw<V> conduction(const Pair<V>& pair) const {
+    const auto& f = parameters_;
+    const V theta_i = temperature(pair.u_i), theta_j = temperature(pair.u_j);
+    const V coefficient = f.conduction * pair.w_heat;
+    if (f.heat_form == HeatForm::inverse_temperature) {
+      return {coefficient * (theta_j - theta_i) / (theta_i * theta_j),
+              2 * f.boltzmann * coefficient, V(0)};
+    }
+    return {coefficient * (theta_j - theta_i), 2 * f.boltzmann * coefficient * theta_i * theta_j,
+            f.boltzmann * coefficient *
+                (theta_j / heat_capacity(pair.u_i) - theta_i / heat_capacity(pair.u_j))};
+  }
+
+ private:
+  double weight(double distance, double range) const {
+    const double x = 1 - distance / range;
+    if (x <= 0) return 0;
+    return parameters_.weight_exponent == 2 ? x * x : std::pow(x, parameters_.weight_exponent);
+  }
+
+  FluidParameters parameters_;
+  double inverse_heat_capacity_;
+};
+
+}  // namespace driftless

@@ -1,0 +1,166 @@
+#include "model/initial.hpp"
+
+#include <boost/random/gamma_distribution.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <cmath>
+
+namespace driftless {
+namespace {
+
+std::size_t island_size(Layout layout, std::size_t particles) {
+  return layout == Layout::pairs ? 2 : particles;
+}
+
+/// Calls visit(first, last) with the places of each island's particles.
+template <class Visit>
+void for_each_island(Layout layout, const State& state, Visit&& visit) {
+  const std::size_t size = island_size(layout, state.size());
+  for (std::size_t first = 0; first + size <= state.size(); first += size) {
+    visit(first, first + size);
+  }
+}
+
+/// Standard normal velocities without momentum; along x alone for pairs.
+void draw_directions(Layout layout, const Noise& noise, State& state) {
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    auto stream = noise.particle_stream(state.id[i], Purpose::initial_velocity);
+    boost::random::normal_distribution<double> normal;
+    const int components = layout == Layout::pairs ? 1 : 3;
+    state.velocity[i] = Vector::Zero();
+    for (int axis = 0; axis < components; ++axis) state.velocity[i][axis] = normal(stream);
+  }
+  for_each_island(layout, state, [&](std::size_t first, std::size_t last) {
+    Vector mean = Vector::Zero();
+    for (std::size_t i = first; i < last; ++i) mean += state.velocity[i];
+    mean /= static_cast<double>(last - first);
+    for (std::size_t i = first; i < last; ++i) state.velocity[i] -= mean;
+  });
+}
+
+double squared_speeds(const State& state, std::size_t first, std::size_t last) {
+  double sum = 0;
+  for (std::size_t i = first; i < last; ++i) sum += state.velocity[i].squaredNorm();
+  return sum;
+}
+
+Eigen::Vector3i lattice_sites(std::size_t particles) {
+  const int side = static_cast<int>(std::ceil(std::cbrt(static_cast<double>(particles)) - 1e-9));
+  const int per_plane = side * side;
+  const int planes = static_cast<int>((particles + per_plane - 1) / per_plane);
+  return {side, side, planes};
+}
+
+Vector lattice_position(const Box& box, const Eigen::Vector3i& sites, std::size_t n) {
+  const auto x = n % sites[0], y = n / sites[0] % sites[1], z = n / sites[0] / sites[1];
+  return {(static_cast<double>(x) + 0.5) * box.lengths[0] / sites[0],
+          (static_cast<double>(y) + 0.5) * box.lengths[1] / sites[1],
+          (static_cast<double>(z) + 0.5) * box.lengths[2] / sites[2]};
+}
+
+}  // namespace
+
+double MicrocanonicalLaw::internal_energy_variance(double e) const {
+  const double total = total_shape();
+  return e * e * shape * (total - shape) / (total * total * (total + 1));
+}
+
+double MicrocanonicalLaw::internal_energy_skewness() const {
+  const double total = total_shape(), other = total - shape;
+  return 2 * (other - shape) * std::sqrt(total + 1) / ((total + 2) * std::sqrt(shape * other));
+}
+
+MicrocanonicalLaw microcanonical_law(const Fluid& fluid, Layout layout, std::size_t particles) {
+  MicrocanonicalLaw law;
+  law.particles = island_size(layout, particles);
+  law.islands = particles / law.particles;
+  law.degrees = layout == Layout::pairs ? 1 : 3 * (static_cast<double>(particles) - 1);
+  law.boltzmann = fluid.boltzmann();
+  law.shape = fluid.parameters().heat_capacity / fluid.boltzmann() + 1;
+  return law;
+}
+
+Box make_box(const Fluid& fluid, Layout layout, std::size_t particles, double density,
+             double pair_distance) {
+  if (layout == Layout::fluid) {
+    return {Vector::Constant(std::cbrt(static_cast<double>(particles) / density))};
+  }
+  const double apart = 1.25 * fluid.range();  // beyond the range, whatever the rounding
+  const Vector cell(pair_distance + apart, apart, apart);
+  // At least three cells a side keep every pair clear of its own images.
+  const Eigen::Vector3i sites = lattice_sites(particles / 2).cwiseMax(3);
+  return {cell.cwiseProduct(sites.cast<double>())};
+}
+
+State place(const Box& box, Layout layout, Placement placement, std::size_t particles,
+            double pair_distance, const Noise& noise) {
+  State state;
+  state.velocity.assign(particles, Vector::Zero());
+  state.internal_energy.assign(particles, 0.0);
+  const bool pairs = layout == Layout::pairs;
+  auto sites = lattice_sites(pairs ? particles / 2 : particles);
+  if (pairs) sites = sites.cwiseMax(3);
+  for (std::size_t i = 0; i < particles; ++i) {
+    state.id.push_back(static_cast<std::uint32_t>(i));
+    Vector position = lattice_position(box, sites, pairs ? i / 2 : i);
+    if (pairs) {
+      position[0] += (i % 2 == 0 ? 0.5 : -0.5) * pair_distance;
+    } else if (placement == Placement::random) {
+      auto stream = noise.particle_stream(state.id[i], Purpose::initial_position);
+      boost::random::uniform_01<double> uniform;
+      for (int axis = 0; axis < 3; ++axis) position[axis] = uniform(stream) * box.lengths[axis];
+    }
+    state.position.push_back(position);
+  }
+  return state;
+}
+
+void draw_microcanonical(const Fluid& fluid, Layout layout, double energy, const Noise& noise,
+                         State& state) {
+  const auto law = microcanonical_law(fluid, layout, state.size());
+  draw_directions(layout, noise, state);
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    auto stream = noise.particle_stream(state.id[i], Purpose::initial_energy);
+    state.internal_energy[i] = boost::random::gamma_distribution<double>(law.shape)(stream);
+  }
+  for_each_island(layout, state, [&](std::size_t first, std::size_t last) {
+    // Kinetic energy m v^2/2 of unit normals is a Gamma(degrees/2) variate in units of m.
+    double sum = 0.5 * squared_speeds(state, first, last);
+    for (std::size_t i = first; i < last; ++i) sum += state.internal_energy[i];
+    const double scale = energy / sum;
+    for (std::size_t i = first; i < last; ++i) {
+      state.internal_energy[i] *= scale;
+      state.velocity[i] *= std::sqrt(scale / fluid.mass());
+    }
+  });
+}
+
+void draw_off_equilibrium(const Fluid& fluid, Layout layout, double energy, const Noise& noise,
+                          State& state) {
+  const auto law = microcanonical_law(fluid, layout, state.size());
+  draw_directions(layout, noise, state);
+  const double kinetic = 0.5 * law.kinetic_energy(energy);
+  for_each_island(layout, state, [&](std::size_t first, std::size_t last) {
+    const double present = 0.5 * fluid.mass() * squared_speeds(state, first, last);
+    const double scale = std::sqrt(kinetic / present);
+    for (std::size_t i = first; i < last; ++i) {
+      state.velocity[i] *= scale;
+      state.internal_energy[i] = (energy - kinetic) / static_cast<double>(last - first);
+    }
+  });
+}
+
+void draw_given_spread(const Fluid& fluid, Layout layout, double spread, double temperature,
+                       const Noise& noise, State& state) {
+  draw_directions(layout, noise, state);
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    state.velocity[i] *= spread;
+    state.internal_energy[i] = fluid.internal_energy(temperature);
+  }
+}
+
+void boost_frame(const Vector& velocity, State& state) {
+  for (auto& v : state.velocity) v += velocity;
+}
+
+}  // namespace driftless

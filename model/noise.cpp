@@ -1,0 +1,67 @@
+#include "model/noise.hpp"
+
+#include <boost/random/normal_distribution.hpp>
+
+namespace driftless {
+namespace {
+
+std::uint64_t word(const r123::Philox4x32::ctr_type& block, unsigned half) {
+  return (std::uint64_t{block[2 * half + 1]} << 32) | block[2 * half];
+}
+
+// Counter word 3 is | stage: 8 | block: 8 | purpose: 8 | step: 8 (its highest bits) |. Two purposes
+// share block 0 (a half each), so that friction and heat of a pair cost one evaluation.
+constexpr std::uint32_t block_unit = 1U << 16;
+
+}  // namespace
+
+void NoiseStream::refill() {
+  counter_[3] += block_unit;
+  const auto block = Philox{}(counter_, key_);
+  words_ = {word(block, 0), word(block, 1)};
+  next_ = 0;
+}
+
+Noise::Noise(std::uint64_t seed, std::uint64_t replica) {
+  // Philox itself mixes seed and replica into the key, so that no two replicas share one.
+  const Philox::ctr_type counter = {
+      {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
+       static_cast<std::uint32_t>(replica), static_cast<std::uint32_t>(replica >> 32)}};
+  const auto mixed = Philox{}(counter, Philox::key_type{{0x64726966U, 0x746c6573U}});
+  key_ = {{mixed[0], mixed[1]}};
+}
+
+Noise::Philox::ctr_type Noise::counter(std::uint32_t id_i, std::uint32_t id_j, unsigned stage,
+                                       Purpose purpose) const {
+  return {{id_i, id_j, static_cast<std::uint32_t>(step_),
+           (stage << 24) | (static_cast<std::uint32_t>(purpose) << 8) |
+               (static_cast<std::uint32_t>(step_ >> 32) & 0xffU)}};
+}
+
+NoiseStream Noise::stream(Philox::ctr_type own, Philox::ctr_type block, Purpose purpose) const {
+  return {key_, own, word(block, static_cast<unsigned>(purpose) % 2)};
+}
+
+Noise::PairNormals Noise::pair_normals(std::uint32_t id_i, std::uint32_t id_j, unsigned stage,
+                                       bool want_friction, bool want_heat) const {
+  const auto friction = counter(id_i, id_j, stage, Purpose::friction);
+  const auto block = Philox{}(friction, key_);
+  PairNormals normals{0, 0};
+  boost::random::normal_distribution<double> normal;
+  if (want_friction) {
+    auto numbers = stream(friction, block, Purpose::friction);
+    normals.friction = normal(numbers);
+  }
+  if (want_heat) {
+    auto numbers = stream(counter(id_i, id_j, stage, Purpose::heat), block, Purpose::heat);
+    normals.heat = normal(numbers);
+  }
+  return normals;
+}
+
+NoiseStream Noise::particle_stream(std::uint32_t id, Purpose purpose) const {
+  const auto own = counter(id, id, 0, purpose);
+  return stream(own, Philox{}(own, key_), purpose);
+}
+
+}  // namespace driftless

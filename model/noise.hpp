@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Random123/philox.h>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+namespace driftless {
+
+/// What a random number is for; numbers of different purposes are independent.
+enum class Purpose : std::uint8_t {
+  friction = 0,
+  heat = 1,
+  initial_velocity = 2,
+  initial_energy = 3,
+  initial_position = 4,
+  monte_carlo = 5,
+};
+
+/// A uniform random bit generator (64 bits a call) over one key and one counter of Philox4x32-10
+/// (Salmon et al., SC11, 2011): any distribution of Boost.Random or <random> accepts it. Copies are
+/// independent readers of the same numbers.
+class NoiseStream {
+ public:
+  using result_type = std::uint64_t;
+  static constexpr result_type min() { return 0; }
+  static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
+
+  result_type operator()() {
+    if (next_ == 2) refill();
+    return words_[next_++];
+  }
+
+ private:
+  friend class Noise;
+  using Philox = r123::Philox4x32;
+
+  /// Starts with `first`, a word that the purpose owns, and goes on with blocks of its own.
+  NoiseStream(Philox::key_type key, Philox::ctr_type counter, result_type first)
+      : key_(key), counter_(counter), words_{0, first} {}
+  void refill();
+
+  Philox::key_type key_;
+  Philox::ctr_type counter_;
+  std::array<result_type, 2> words_;
+  unsigned next_ = 1;
+};
+
+/// Counter-based noise: every number is a pure function of (seed, replica, step, stage, ids,
+/// purpose), whatever the order of visits, the number of threads, or a restart in between.
+class Noise {
+ public:
+  Noise(std::uint64_t seed, std::uint64_t replica);
+
+  /// Names the present step (below 2^40); numbers of different steps are independent.
+  void set_step(std::uint64_t step) { step_ = step; }
+  std::uint64_t step() const { return step_; }
+
+  /// Two standard normal variates of a pair, `friction` and `heat`.
+  struct PairNormals {
+    double friction, heat;
+  };
+  /// The normals of the pair (id_i, id_j) in a stage (0 to 255) of the present step. A purpose not
+  /// wanted costs nothing and reads 0; the other one's number does not depend on it.
+  PairNormals pair_normals(std::uint32_t id_i, std::uint32_t id_j, unsigned stage,
+                           bool want_friction, bool want_heat) const;
+
+  /// The stream of one particle for a purpose (initial states): step 0 is before the first step.
+  NoiseStream particle_stream(std::uint32_t id, Purpose purpose) const;
+
+ private:
+  using Philox = NoiseStream::Philox;
+  NoiseStream stream(Philox::ctr_type counter, Philox::ctr_type block, Purpose purpose) const;
+  Philox::ctr_type counter(std::uint32_t id_i, std::uint32_t id_j, unsigned stage,
+                           Purpose purpose) const;
+
+  Philox::key_type key_;
+  std::uint64_t step_ = 0;
+};
+
+}  // namespace driftless

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+
+namespace driftless {
+
+/// What a pair (i, j), id_i < id_j, sees of itself; vectors are projected on e = (r_i - r_j)/r.
+/// V is double or a vector of lanes: kernels are pure functions, generic in V.
+template <class V>
+struct Pair {
+  V r;           ///< distance
+  V w_friction;  ///< weight w(r) of friction
+  V w_heat;      ///< weight w(r) of conduction
+  V v;           ///< relative velocity (v_i - v_j).e
+  V u_i, u_j;    ///< internal energies
+  V noise;       ///< standard normal variate of the friction; 0 where nothing fluctuates
+  V heat_noise;  ///< standard normal variate of the conduction, independent of `noise`
+};
+
+/// A pair's state at the end of an implicit step, beside the `Pair` at its start.
+template <class V>
+struct TrialPair : Pair<V> {
+  V dv_i, dv_j;  ///< changes (v_i' - v_i).e and (v_j' - v_j).e since the start
+};
+
+/// What a pair exchanges: particle i receives momentum +momentum e and energy_i, particle j
+/// momentum -momentum e and energy_j.
+template <class V>
+struct Transfer {
+  V momentum{0};
+  V energy_i{0};
+  V energy_j{0};
+
+  Transfer& operator+=(const Transfer& other) {
+    momentum += other.momentum;
+    energy_i += other.energy_i;
+    energy_j += other.energy_j;
+    return *this;
+  }
+};
+
+/// Order of a sweep over pairs, one after the other: ascending ids (i, then j) or the reverse.
+enum class SweepOrder { forward, reverse };
+
+}  // namespace driftless

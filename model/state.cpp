@@ -1,0 +1,46 @@
+#include "model/state.hpp"
+
+#include <cmath>
+
+namespace driftless {
+
+Vector Box::wrap(const Vector& position) const {
+  Vector wrapped;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = lengths[axis];
+    const double x = position[axis] - length * std::floor(position[axis] / length);
+    wrapped[axis] = x >= length ? 0 : x;  // rounding may put a tiny negative on the upper edge
+  }
+  return wrapped;
+}
+
+Vector Box::minimum_image(const Vector& difference) const {
+  Vector shortest;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = lengths[axis];
+    shortest[axis] = difference[axis] - length * std::round(difference[axis] / length);
+  }
+  return shortest;
+}
+
+void Exchange::reset(std::size_t particles) {
+  momentum.assign(particles, Vector::Zero());
+  energy.assign(particles, 0.0);
+}
+
+std::string to_string(FailureCause cause) {
+  switch (cause) {
+    case FailureCause::non_finite:
+      return "non-finite number";
+    case FailureCause::negative_internal_energy:
+      return "negative internal energy";
+    case FailureCause::not_converged:
+      return "solver did not converge";
+  }
+  throw std::logic_error("unknown failure cause");
+}
+
+StepFailure::StepFailure(FailureCause cause, std::vector<std::uint32_t> ids)
+    : std::runtime_error(to_string(cause)), cause_(cause), ids_(std::move(ids)) {}
+
+}  // namespace driftless

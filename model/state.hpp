@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace driftless {
+
+using Vector = Eigen::Vector3d;
+
+/// Velocities and internal energies of all particles, in the order of storage.
+struct Motion {
+  std::vector<Vector> velocity;
+  std::vector<double> internal_energy;
+};
+
+/// State of N particles. `id` names a particle for life: noise and pair order follow it.
+struct State : Motion {
+  std::vector<Vector> position;  ///< inside the periodic box, each component in [0, length)
+  std::vector<std::uint32_t> id;
+
+  std::size_t size() const { return position.size(); }
+};
+
+/// Periodic rectangular box with one corner at the origin.
+struct Box {
+  Vector lengths;
+
+  double volume() const { return lengths.prod(); }
+  /// The image of a position inside the box.
+  Vector wrap(const Vector& position) const;
+  /// The shortest image of a difference of two positions.
+  Vector minimum_image(const Vector& difference) const;
+};
+
+/// What every particle receives in one stage of a step.
+struct Exchange {
+  std::vector<Vector> momentum;
+  std::vector<double> energy;
+
+  void reset(std::size_t particles);
+};
+
+/// Why a step could not be completed.
+enum class FailureCause { non_finite, negative_internal_energy, not_converged };
+
+/// "non-finite number", "negative internal energy", "solver did not converge".
+std::string to_string(FailureCause cause);
+
+/// Thrown from inside a step, with the ids of the particles concerned (empty if all are). The state
+/// is then that of an unfinished step; nothing is clipped or repaired.
+class StepFailure : public std::runtime_error {
+ public:
+  StepFailure(FailureCause cause, std::vector<std::uint32_t> ids);
+  FailureCause cause() const { return cause_; }
+  const std::vector<std::uint32_t>& ids() const { return ids_; }
+
+ private:
+  FailureCause cause_;
+  std::vector<std::uint32_t> ids_;
+};
+
+}  // namespace driftless
