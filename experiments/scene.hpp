@@ -26,8 +26,8 @@ struct Scene {
   Vector frame_velocity = Vector::Zero();
   InitialState initial_state = InitialState::microcanonical;
   Placement initial_positions = Placement::random;
-  double initial_temperature = 1;        ///< of the internal energies, for `rest` and `given`
-  double initial_velocity_spread = 0;    ///< per component, for `given`
+  double initial_temperature = 1;          ///< of the internal energies, for `rest` and `given`
+  double initial_velocity_spread = 0;      ///< per component, for `given`
   std::vector<Vector> initial_velocities;  ///< one per particle, for `given`; overrides the spread
 };
 
@@ -42,14 +42,14 @@ struct Preset {
 /// mackie-1999, soft-fluid, two-body.
 const std::vector<Preset>& presets();
 
-/// Predicted relaxation time of internal energies (derived: friction at rate rho zeta_0 [w]/(2 m a),
-/// conduction at rate rho L_0 [w]/(phi T^2), [w] the volume integral of the weight; for `pairs` the
-/// rates at the pair's distance). Infinite if nothing acts.
+/// Predicted relaxation time of internal energies (derived: friction at rate rho zeta_0 [w]/(2 m
+/// a), conduction at rate rho L_0 [w]/(phi T^2), [w] the volume integral of the weight; for `pairs`
+/// the rates at the pair's distance). Infinite if nothing acts.
 double relaxation_time(const Scene& scene);
 
 /// Predicted decay time of the slowest temperature wave of the box, 1/((kappa + D) k^2) with the
-/// published conductivity and diffusion of the ideal fluid; 0 for `pairs` and frozen systems without
-/// conduction.
+/// published conductivity and diffusion of the ideal fluid; 0 for `pairs` and frozen systems
+/// without conduction.
 double wave_time(const Scene& scene);
 
 }  // namespace driftless

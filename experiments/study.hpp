@@ -43,6 +43,9 @@ Study read_study(const std::string& path);
 /// The same from text; `source` stands for the file's name in messages.
 Study parse_study(const std::string& text, const std::string& source);
 
+/// Steps of a time step between two samples: a whole number in every study that was read.
+std::uint64_t steps_per_sample(const Study& study, double time_step);
+
 /// The study with every default and preset written out; reading it again gives the same study.
 nlohmann::json to_json(const Study& study);
 /// A scene's every key, as an override of its preset would be written.

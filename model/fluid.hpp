@@ -37,7 +37,7 @@ struct FluidParameters {
   bool operator==(const FluidParameters&) const = default;
 };
 
-/// Friction of one pair: momentum transfer -zeta v dt + Gamma dW along the pair's direction.
+/// Friction of one pair: force -zeta v plus noise of strength Gamma along the pair's direction.
 template <class V>
 struct FrictionLaw {
   V friction;       ///< zeta
@@ -45,7 +45,8 @@ struct FrictionLaw {
   V induced;        ///< (1/4)(d/du_i + d/du_j) Gamma^2, the noise-induced friction
 };
 
-/// Conduction of one pair: heat lambda (theta_j - theta_i) dt + Lambda dW from j to i.
+/// Conduction of one pair: heat rate lambda (theta_j - theta_i) plus noise of strength Lambda, from
+/// j to i.
 template <class V>
 struct ConductionLaw {
   V rate;           ///< lambda (theta_j - theta_i)

@@ -28,21 +28,33 @@ class PairSearch {
 
  private:
   void sort_into_cells(const State& state);
-  void neighbours(const State& state, std::uint32_t i);
-  void visit_row(const State& state, std::uint32_t i, int row, int first, int last,
-                 const Vector& shifted);
+  void visit_all(const State& state);
+  void visit_cells(const State& state);
+  void gather_half_shell(const Eigen::Vector3i& cell);
+  void gather(std::size_t begin, std::size_t end, const Vector& shift);
+  void visit_candidates(const State& state, std::size_t first);
+  void keep(const State& state, std::uint32_t a, std::uint32_t b, const Vector& difference);
+  void sort_by_ids(const State& state);
   std::size_t cell_of(const Vector& position) const;
+  std::size_t cell_index(int x, int y, int z) const {
+    return (static_cast<std::size_t>(z) * cells_[1] + y) * cells_[0] + x;
+  }
 
   Box box_;
   double range_;
   Eigen::Vector3i cells_;
   bool use_cells_;
   std::vector<std::uint32_t> cell_begin_;
-  struct Entry {
-    Vector position;
-    std::uint32_t id, place;
-  };
-  std::vector<Entry> entries_;  ///< particles sorted by cell, x fastest
+  std::vector<Vector> cell_position_;  ///< particles sorted by cell, x fastest
+  std::vector<std::uint32_t> cell_place_;
+  /// A cell's particles and then those of half of its neighbours, as seen from the cell.
+  struct Candidates {
+    std::vector<double> x, y, z;
+    std::vector<std::uint32_t> place;
+  } candidates_;
+  std::vector<double> squared_;        ///< scratch: distances of one particle to the candidates
+  std::vector<std::uint32_t> within_;  ///< scratch: candidates within range of one particle
+  std::vector<Found> unsorted_;
   std::vector<Found> found_;
 };
 

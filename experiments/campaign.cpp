@@ -1,0 +1,264 @@
+#include "experiments/campaign.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <numeric>
+#include <thread>
+
+#include "experiments/answers.hpp"
+#include "experiments/cell.hpp"
+#include "experiments/files.hpp"
+#include "experiments/progress.hpp"
+#include "experiments/provenance.hpp"
+#include "experiments/timing.hpp"
+
+namespace driftless {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+/// Runs work(index) for every index on so many threads; the first exception is thrown again.
+template <class Work>
+void parallel(std::size_t count, unsigned threads, Work&& work) {
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr failure;
+  std::mutex failure_mutex;
+  {
+    std::vector<std::jthread> pool;
+    for (unsigned n = 0; n < std::min<std::size_t>(threads, count); ++n) {
+      pool.emplace_back([&] {
+        try {
+          for (auto index = next++; index < count; index = next++) work(index);
+        } catch (...) {
+          const std::lock_guard lock(failure_mutex);
+          if (!failure) failure = std::current_exception();
+          next = count;
+        }
+      });
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+struct Cell {
+  const PreparedScene* prepared;
+  const MethodChoice* choice;
+  double time_step;
+  fs::path file;  ///< where it is kept once finished
+  json record;    ///< null until finished
+  std::vector<ReplicaResult> replicas = {};
+  std::atomic<unsigned> remaining = 0;
+
+  std::string name() const {
+    return fmt::format("{}, {}, step {}", prepared->scene().name, choice->name, time_step);
+  }
+};
+
+class Campaign {
+ public:
+  Campaign(const Study& study, const CampaignOptions& options)
+      : study_(study),
+        options_(options),
+        threads_(options.threads > 0 ? options.threads
+                                     : std::max(1U, std::thread::hardware_concurrency())) {}
+
+  json run();
+
+ private:
+  void prepare_directory() const;
+  void prepare_scenes();
+  void list_cells();
+  std::string cell_key(const Scene& scene, const MethodChoice& choice, double time_step) const;
+  double predicted_cost(const Cell& cell) const;
+  void run_cells();
+  void run_one(Cell& cell, unsigned replica, Progress& progress);
+  void time_all();
+  json scene_records() const;
+
+  const Study& study_;
+  const CampaignOptions& options_;
+  unsigned threads_;
+  std::vector<std::unique_ptr<PreparedScene>> prepared_;
+  std::vector<std::unique_ptr<Cell>> cells_;
+};
+
+void Campaign::prepare_directory() const {
+  std::error_code error;
+  fs::create_directories(options_.directory / "cells", error);
+  if (error) {
+    throw InputError(fmt::format("{}: the output folder cannot be made ({})",
+                                 options_.directory.string(), error.message()));
+  }
+  const auto probe = options_.directory / "cells" / "probe";
+  write_atomically(probe, "");
+  fs::remove(probe, error);
+}
+
+void Campaign::prepare_scenes() {
+  prepared_.resize(study_.scenes.size());
+  parallel(prepared_.size(), threads_, [&](std::size_t n) {
+    prepared_[n] = std::make_unique<PreparedScene>(study_.scenes[n], study_.seed, study_.replicas);
+  });
+}
+
+std::string Campaign::cell_key(const Scene& scene, const MethodChoice& choice,
+                               double time_step) const {
+  const json identity = {program_fingerprint(),
+                         to_json(scene),
+                         choice.name,
+                         to_json(choice.options),
+                         time_step,
+                         study_.equilibrate,
+                         study_.measure,
+                         study_.sample_every,
+                         study_.replicas,
+                         study_.seed};
+  return fingerprint(identity.dump());
+}
+
+void Campaign::list_cells() {
+  for (const auto& prepared : prepared_) {
+    for (const auto& choice : study_.methods) {
+      const auto refused = refusal(*find_method(choice.name), prepared->fluid());
+      for (const double time_step : study_.time_steps) {
+        auto cell =
+            std::make_unique<Cell>(prepared.get(), &choice, time_step,
+                                   options_.directory / "cells" /
+                                       (cell_key(prepared->scene(), choice, time_step) + ".json"));
+        if (refused) cell->record = refused_cell(*prepared, choice, time_step, *refused);
+        if (!refused && fs::exists(cell->file)) {
+          cell->record = json::parse(read_text(cell->file), nullptr, false);
+          if (cell->record.is_discarded()) cell->record = nullptr;
+        }
+        cells_.push_back(std::move(cell));
+      }
+    }
+  }
+}
+
+double Campaign::predicted_cost(const Cell& cell) const {
+  return static_cast<double>(StepPlan(study_, cell.time_step).steps()) *
+         static_cast<double>(cell.prepared->scene().particles);
+}
+
+void Campaign::run_one(Cell& cell, unsigned replica, Progress& progress) {
+  progress.replica_started();
+  cell.replicas[replica] =
+      run_replica(*cell.prepared, study_, *cell.choice, cell.time_step, replica);
+  progress.replica_finished(predicted_cost(cell));
+  if (--cell.remaining > 0) return;
+  cell.record = cell_record(*cell.prepared, study_, *cell.choice, cell.time_step, cell.replicas);
+  cell.replicas = {};
+  write_atomically(cell.file, cell.record.dump());
+  progress.cell_finished(cell.name(), cell.record["status"]);
+}
+
+void Campaign::run_cells() {
+  std::vector<std::pair<Cell*, unsigned>> runs;
+  double cost = 0;
+  for (const auto& cell : cells_) {
+    if (!cell->record.is_null()) continue;
+    cell->replicas.resize(study_.replicas);
+    cell->remaining = study_.replicas;
+    for (unsigned replica = 0; replica < study_.replicas; ++replica) {
+      runs.emplace_back(cell.get(), replica);
+      cost += predicted_cost(*cell);
+    }
+  }
+  // The longest first, so that no core waits for a straggler at the end.
+  std::stable_sort(runs.begin(), runs.end(), [&](const auto& a, const auto& b) {
+    return predicted_cost(*a.first) > predicted_cost(*b.first);
+  });
+  Progress progress(cells_.size(), cost, options_.quiet);
+  progress.cells_resumed(static_cast<std::size_t>(std::count_if(
+      cells_.begin(), cells_.end(), [](const auto& cell) { return !cell->record.is_null(); })));
+  parallel(runs.size(), threads_,
+           [&](std::size_t n) { run_one(*runs[n].first, runs[n].second, progress); });
+}
+
+void Campaign::time_all() {
+  std::vector<TimedCell> timed;
+  std::vector<json*> records;
+  std::string keys;
+  for (const auto& cell : cells_) {
+    if (cell->record["status"] == "not_applicable") continue;
+    timed.push_back({cell->prepared, cell->choice, cell->time_step});
+    records.push_back(&cell->record);
+    keys += cell->file.filename().string();
+  }
+  // One pass over all cells, or none: times of different passes do not compare.
+  const auto file = options_.directory / "timing.json";
+  json timing;
+  if (fs::exists(file)) timing = json::parse(read_text(file), nullptr, false);
+  if (!timing.is_object() || timing.value("cells", "") != fingerprint(keys)) {
+    timing = {{"cells", fingerprint(keys)}, {"costs", json::array()}};
+    for (const auto& cost : time_cells(timed)) {
+      timing["costs"].push_back({cost.seconds, cost.spread});
+    }
+    write_atomically(file, timing.dump());
+  }
+  for (std::size_t n = 0; n < timed.size(); ++n) {
+    auto& cost = (*records[n])["cost"];
+    const double seconds = timing["costs"][n][0], spread = timing["costs"][n][1];
+    cost["core_seconds_per_time"] = seconds > 0 ? json(seconds / timed[n].time_step) : json();
+    cost["spread"] = spread / timed[n].time_step;
+  }
+}
+
+json Campaign::scene_records() const {
+  json scenes = json::array();
+  for (const auto& prepared : prepared_) {
+    const double relaxation = prepared->relaxation();
+    const bool resolves = resolves_internal_energy(*prepared, study_);
+    json record = {{"name", prepared->scene().name},
+                   {"preset", prepared->scene().preset},
+                   {"parameters", to_json(prepared->scene())},
+                   {"relaxation_time", std::isfinite(relaxation) ? json(relaxation) : json()},
+                   {"resolves_internal_energy", resolves},
+                   {"energy_per_particle", prepared->energy_per_particle()}};
+    if (!resolves) {
+      record["note"] = fmt::format(
+          "internal energies relax in about {:.3g}: their observables need equilibration of {:.3g} "
+          "and measurement of {:.3g}",
+          relaxation, 5 * relaxation, 20 * relaxation);
+    }
+    scenes.push_back(record);
+  }
+  return scenes;
+}
+
+json Campaign::run() {
+  prepare_directory();
+  prepare_scenes();
+  list_cells();
+  run_cells();
+  time_all();
+  json result = {{"format", "driftless-result/1"},
+                 {"name", study_.name},
+                 {"provenance", provenance(threads_, study_.seed, options_.command)},
+                 {"study", to_json(study_)},
+                 {"scenes", scene_records()},
+                 {"cells", json::array()}};
+  for (auto& cell : cells_) {
+    if (!cell->record["cost"].contains("core_seconds_per_time")) {
+      cell->record["cost"]["core_seconds_per_time"] = nullptr;
+      cell->record["cost"]["spread"] = 0;
+    }
+    result["cells"].push_back(std::move(cell->record));
+  }
+  add_answers(result);
+  return result;
+}
+
+}  // namespace
+
+json run_campaign(const Study& study, const CampaignOptions& options) {
+  return Campaign(study, options).run();
+}
+
+}  // namespace driftless

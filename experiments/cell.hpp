@@ -1,0 +1,32 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/replica.hpp"
+
+namespace driftless {
+
+/// The status of a cell: "ok", or that of its first failed replica.
+std::string cell_status(const std::vector<ReplicaResult>& replicas);
+
+/// The record of a cell in a result, without its cost: what was measured, with intervals, beside
+/// what is exact; how replicas failed; curves and energy trace. Never holds NaN or infinity.
+nlohmann::json cell_record(const PreparedScene& prepared, const Study& study,
+                           const MethodChoice& choice, double time_step,
+                           const std::vector<ReplicaResult>& replicas);
+
+/// The record of a cell whose method refuses the scene.
+nlohmann::json refused_cell(const PreparedScene& prepared, const MethodChoice& choice,
+                            double time_step, const std::string& reason);
+
+/// How far a measured observable lies from its exact value: {value, lower, upper, below_noise}, the
+/// relative difference with its 95 % interval; for distances their root, for drifts the size.
+nlohmann::json deviation(const Observed& observed);
+
+/// Whether a study is long enough for observables of the internal energies: equilibration of 5
+/// predicted relaxation times and measurement of 20.
+bool resolves_internal_energy(const PreparedScene& prepared, const Study& study);
+
+}  // namespace driftless

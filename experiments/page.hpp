@@ -1,0 +1,12 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace driftless {
+
+/// The web page of a result (format "driftless-result/1"): one self-contained HTML text that opens
+/// without a network. What the page shows is worked out from the result when it is opened.
+std::string render_page(const nlohmann::json& result);
+
+}  // namespace driftless

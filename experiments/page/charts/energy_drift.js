@@ -1,0 +1,30 @@
+// The systematic drift of the energy, and its random walk, against the step.
+import {error_rows, scene_cells, size_rows} from '../rows.js';
+import {step_axis} from './error_against_step.js';
+import {error_chart} from './error_chart.js';
+
+// Below this, in kT per particle, an energy counts as kept to rounding and stays off the chart.
+export const rounding = 1e-8;
+
+export function drift_rows({result, scene, unit}, observable) {
+  const cells = scene_cells(result, scene);
+  const rows = observable === 'energy_drift' ? error_rows(cells, observable, unit) : [];
+  return rows.length ? rows : size_rows(cells, observable, unit);
+}
+
+export function energy_drift(context, observable, title) {
+  const cells = scene_cells(context.result, context.scene);
+  const rows = drift_rows(context, observable).filter((row) => row.upper > rounding);
+  if (!rows.length) return null;
+  return error_chart({
+    rows, failures: [], labels: context.labels, method_legend: false,
+    x: step_axis(cells), y: {title, scale: 1, size_title: 'size'},
+  });
+}
+
+// Methods whose every measured step lies at rounding.
+export function methods_at_rounding(context) {
+  const rows = drift_rows(context, 'energy_drift');
+  const all = [...new Set(rows.map((row) => row.method))];
+  return all.filter((method) => rows.every((row) => row.method !== method || row.upper <= rounding));
+}

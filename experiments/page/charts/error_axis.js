@@ -1,0 +1,15 @@
+import {deviation, is_relative, observable_short} from '../format.js';
+
+const units = {
+  energy_drift: '|energy drift|, kT per particle and unit time',
+  momentum_distance: 'distance from the exact law of momenta',
+  internal_energy_distance: 'distance from the exact law of internal energies',
+};
+
+export function error_axis(observable) {
+  return {title: units[observable] ?? `error of ${observable_short(observable)}, %`, scale: is_relative(observable) ? 100 : 1};
+}
+
+export function tolerance_line(observable, tolerance) {
+  return {value: tolerance, text: `tolerance ${deviation(tolerance, observable)}`};
+}

@@ -1,0 +1,94 @@
+// The answer in a sentence, and the table of every method's cheapest step that passes.
+import {answer, methods_of} from '../answer.js';
+import {element, replace, table} from '../dom.js';
+import {deviation, number, observable_short, status_title, with_error} from '../format.js';
+import {method_tag} from '../palette.js';
+
+function published(result, scene, observable, tolerance) {
+  return result.answers?.find((entry) => entry.scene === scene && entry.observable === observable &&
+    Math.abs(entry.tolerance - tolerance) <= 1e-9 * tolerance)?.sentence;
+}
+
+function composed(context, scene) {
+  const {result, observable, tolerance, unit} = context;
+  const {winner, runner_up} = answer(result, scene, observable, tolerance);
+  const within = deviation(tolerance, observable);
+  const what = observable_short(observable);
+  if (!winner) return `${scene}: no method is shown to keep ${what} within ${within} at any step tried.`;
+  const {cell, judgement, cost} = winner.best;
+  const first = `${scene}: ${winner.label} at step ${number(cell.time_step)} keeps ${what} within ${within} ` +
+    `(at worst ${deviation(judgement.upper, observable)}) for ${number(cost * unit.factor)} ${unit.name} per unit time`;
+  if (!runner_up) return `${first}; no other method does.`;
+  return `${first}; next is ${runner_up.label} at step ${number(runner_up.best.cell.time_step)}, at ${number(runner_up.best.cost / cost, 2)} times the cost.`;
+}
+
+function sentence(context, scene) {
+  return published(context.result, scene, context.observable, context.tolerance) ?? composed(context, scene);
+}
+
+const count = (entries, noun) => `${entries.length} ${noun}${entries.length === 1 ? '' : 's'}`;
+
+// Why no step of a method passes, from its judged cells.
+function reason(entry, observable, tolerance) {
+  const with_state = (...states) => entry.judged.filter(({judgement}) => states.includes(judgement.state));
+  const numbers = with_state('resolved', 'below_noise').sort((a, b) => a.judgement.upper - b.judgement.upper);
+  const failed = with_state('failed');
+  if (with_state('not_applicable').length === entry.judged.length) return `not applicable: ${entry.judged[0].judgement.note}`;
+  if (failed.length === entry.judged.length) return `failed at every step: ${causes(failed)}`;
+  if (!numbers.length) return without_numbers(entry, with_state);
+  if (numbers.some(({judgement}) => judgement.upper <= tolerance)) return 'passes, but its cost is not known';
+  const {cell, judgement} = numbers[0];
+  const at = `${deviation(judgement.upper, observable)} at step ${number(cell.time_step)}`;
+  if (judgement.state === 'below_noise') return `below noise, but not resolved to ${deviation(tolerance, observable)}: could be up to ${at}`;
+  if (judgement.lower > tolerance) return `too wrong at every step: at best ${deviation(judgement.value, observable)}, at step ${number(cell.time_step)}`;
+  return `undecided: ${deviation(judgement.value, observable)} measured, could be up to ${at}`;
+}
+
+function without_numbers(entry, with_state) {
+  const [first] = [...with_state('not_resolved'), ...with_state('no_exact_value')];
+  if (!first) return 'nothing was measured';
+  const words = first.judgement.state === 'not_resolved' ? 'not resolved' : 'no exact value';
+  const note = first.judgement.note ? `: ${first.judgement.note}` : '';
+  return `${words} (${observable_short(first.judgement.worst)})${note}`;
+}
+
+function causes(failed) {
+  const kinds = [...new Set(failed.map(({cell}) => status_title(cell.status)))];
+  return kinds.join(', ');
+}
+
+function row_of(entry, context, winner) {
+  const {observable, tolerance, unit, labels} = context;
+  const name = method_tag(entry.label, labels);
+  if (!entry.best) {
+    return {attributes: {class: 'none'}, cells: [name, {text: reason(entry, observable, tolerance), colspan: 6, class: 'reason'}]};
+  }
+  const {cell, judgement, cost} = entry.best;
+  const drift = cell.observables.energy_drift;
+  const is_winner = entry === winner;
+  return {
+    attributes: {class: is_winner ? 'best' : null, 'data-method': cell.method, 'data-step': cell.time_step, 'data-best': is_winner},
+    cells: [
+      element('span', {}, name, is_winner ? element('span', {class: 'badge'}, 'answer') : null),
+      numeric(number(cell.time_step)), numeric(number(cost * unit.factor)), numeric(`${number(cost / winner.best.cost, 2)}×`),
+      numeric(judgement.state === 'below_noise' ? 'below noise' : deviation(judgement.value, observable)),
+      numeric(deviation(judgement.upper, observable)),
+      numeric(drift ? with_error(drift.mean, drift.error) : '–'),
+    ],
+  };
+}
+
+const numeric = (text) => ({text, class: 'number'});
+
+export function render_answer(context) {
+  const {result, scene, observable, tolerance, unit} = context;
+  const others = result.scenes.map((entry) => entry.name).filter((name) => name !== scene);
+  replace('answer-sentence', sentence(context, scene));
+  replace('other-answers', others.length ? element('ul', {}, others.map((name) => element('li', {}, sentence(context, name)))) : null);
+  const entries = methods_of(result, scene, observable, tolerance);
+  const ranked = entries.filter((entry) => entry.best).sort((a, b) => a.best.cost - b.best.cost);
+  const rest = entries.filter((entry) => !entry.best);
+  const head = ['method', 'cheapest step that passes', `cost, ${unit.name} per unit time`, 'relative cost', 'error', 'at worst (95 %)', 'energy drift, kT per particle and unit time'];
+  const caption = `${scene}: ${count(ranked, 'method')} of ${entries.length} keep ${observable_short(observable)} within ${deviation(tolerance, observable)}`;
+  replace('answer-table-place', table('answer-table', caption, head, [...ranked, ...rest].map((entry) => row_of(entry, context, ranked[0]))));
+}

@@ -1,0 +1,22 @@
+// The fitted order of each method, beside the chart of error against step; its marks are the legend.
+import {parts_of} from '../answer.js';
+import {replace, table} from '../dom.js';
+import {observable_short} from '../format.js';
+import {method_tag} from '../palette.js';
+
+const short_heads = {kinetic_temperature: 'kinetic T', internal_temperature: 'internal T', internal_energy_variance: 'Var u'};
+
+function order_text(orders, method, observable) {
+  const fit = orders.find((entry) => entry.observable === observable && entry.method === method);
+  if (!fit || !Number.isFinite(fit.order)) return {text: '–', class: 'number'};
+  const error = Number.isFinite(fit.error) ? ` ± ${fit.error.toFixed(1)}` : '';
+  return {text: `${fit.order.toFixed(1)}${error}`, class: 'number', title: `fitted to ${fit.points} steps`};
+}
+
+export function render_orders({result, scene, observable, labels}) {
+  const orders = (result.orders ?? []).filter((entry) => entry.scene === scene);
+  const parts = parts_of(observable);
+  const heads = parts.map((part) => (parts.length > 1 ? short_heads[part] ?? observable_short(part) : 'order'));
+  const rows = labels.map((label) => [method_tag(label, labels), ...parts.map((part) => order_text(orders, label, part))]);
+  replace('order-table-place', table('order-table', 'fitted order: the slope of error against step, ± one standard error', ['method', ...heads], rows));
+}

@@ -1,0 +1,201 @@
+#include "experiments/prepared_scene.hpp"
+
+#include <cmath>
+
+#include "model/configurations.hpp"
+
+namespace driftless {
+namespace {
+
+// The Monte Carlo run of a fluid with repulsion, in paths: enough for the start to be forgotten (a
+// path moves a particle by half a diameter), and for references better than most studies.
+constexpr int pilot_burn_in = 60, pilot_paths = 120, burn_in = 40, chain_paths = 400;
+constexpr std::uint64_t pilot_seed = 0;  // the energy belongs to the scene, not to the study
+
+double centre_of_mass_energy(const Scene& scene) {
+  return 0.5 * scene.fluid.mass * static_cast<double>(scene.particles) *
+         scene.frame_velocity.squaredNorm();
+}
+
+}  // namespace
+
+PreparedScene::PreparedScene(const Scene& scene, std::uint64_t seed, unsigned replicas)
+    : scene_(scene),
+      fluid_(scene.fluid),
+      box_(make_box(fluid_, scene.layout, scene.particles, scene.density, scene.pair_distance)),
+      seed_(seed),
+      replicas_(replicas),
+      relaxation_(relaxation_time(scene)) {
+  find_law();
+  if (fluid_.has_repulsion() && fluid_.fluctuates()) {
+    prepare_with_repulsion();
+  } else {
+    prepare_ideal();
+  }
+}
+
+double PreparedScene::energy_unit() const {
+  const double thermal = fluid_.boltzmann() * scene_.fluid.temperature;
+  return thermal > 0 ? thermal : 1;
+}
+
+void PreparedScene::find_law() {
+  if (!fluid_.fluctuates()) return;
+  auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
+  // A pair at a fixed distance, or two particles, keep u_i - u_j without conduction; without
+  // friction nothing ties the kinetic energy to the internal energies.
+  if (fluid_.has_friction() && (law.particles >= 3 || fluid_.has_conduction())) {
+    law_ = law;
+  } else if (!fluid_.has_friction() && fluid_.has_conduction()) {
+    law.degrees = 0;
+    law_ = law;
+  }
+  if (!law_) return;
+  const double total = law_->total_shape();
+  // Without kinetic degrees the momenta have no law; the binned one is then not used.
+  distributions_ = ExactDistributions{BinnedLaw::signed_root(total - 0.5),
+                                      BinnedLaw::beta(law_->shape, total - law_->shape)};
+}
+
+void PreparedScene::prepare_ideal() {
+  System system = start(0);
+  total_energy_ = system.total_energy();
+  const auto islands = microcanonical_law(fluid_, scene_.layout, scene_.particles).islands;
+  double energy = system.internal_energy();
+  if (law_ && law_->degrees > 0) energy = total_energy_ - centre_of_mass_energy(scene_);
+  island_energy_ = energy / static_cast<double>(islands);
+  if (law_ && !fluid_.has_repulsion()) reference_from_law();
+}
+
+void PreparedScene::reference_from_law() {
+  const double e = island_energy_;
+  references_["internal_temperature"] = {law_->internal_temperature(e), 0};
+  references_["internal_energy_mean"] = {law_->internal_energy_mean(e), 0};
+  references_["internal_energy_variance"] = {law_->internal_energy_variance(e), 0};
+  references_["internal_energy_skewness"] = {law_->internal_energy_skewness(), 0};
+  references_["internal_energy_distance"] = {0, 0};
+  if (law_->degrees == 0) return;
+  references_["kinetic_temperature"] = {law_->kinetic_temperature(e), 0};
+  references_["kinetic_share"] = {1, 0};
+  references_["momentum_distance"] = {0, 0};
+  if (scene_.layout == Layout::fluid && !scene_.frozen) {
+    references_["pressure"] = {static_cast<double>(scene_.particles) / box_.volume() *
+                                   fluid_.boltzmann() * law_->kinetic_temperature(e),
+                               0};
+  }
+}
+
+void PreparedScene::prepare_with_repulsion() {
+  const auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
+  const auto placed = [&](const Noise& numbers) {
+    return place(box_, scene_.layout, Placement::lattice, scene_.particles, scene_.pair_distance,
+                 numbers);
+  };
+  ConfigurationChain pilot(fluid_, box_, placed({pilot_seed, 0}), {pilot_seed, 0});
+  double potential = 0;
+  for (int path = 0; path < pilot_burn_in + pilot_paths; ++path) {
+    pilot.advance_canonical();
+    if (path >= pilot_burn_in) potential += pilot.system().potential_energy() / pilot_paths;
+  }
+  const double ideal = law.energy_at(scene_.fluid.temperature);
+  const double energy = ideal + potential;
+  island_energy_ = ideal;
+  total_energy_ = energy + centre_of_mass_energy(scene_);
+
+  // A number of replicas beyond any study's keys the chain apart from the runs.
+  ConfigurationChain chain(fluid_, box_, pilot.system().state(), {seed_, ~std::uint64_t{0}});
+  Eigen::MatrixXd samples(chain_paths, 5);
+  const int apart = std::max(1, chain_paths / static_cast<int>(std::max(1U, replicas_)));
+  for (int path = -burn_in; path < chain_paths; ++path) {
+    chain.advance_microcanonical(energy, law.total_shape());
+    if (path < 0) continue;
+    const auto sums = configuration_sums(chain.system());
+    samples.row(path) << sums.potential, sums.virial, sums.squared_force, sums.laplacian,
+        energy - sums.potential;
+    if (path % apart == 0) configurations_.push_back(chain.system().state());
+  }
+  while (configurations_.size() < replicas_) configurations_.push_back(chain.system().state());
+  if (law_ && law_->degrees > 0) reference_from_chain(samples);
+}
+
+void PreparedScene::reference_from_chain(const Eigen::MatrixXd& samples) {
+  references_["kinetic_share"] = {1, 0};
+  references_["momentum_distance"] = {0, 0};
+  references_["internal_energy_distance"] = {0, 0};
+  if (scene_.frozen) return;  // every replica keeps a configuration of its own
+  const auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
+  const double n = static_cast<double>(scene_.particles), k = fluid_.boltzmann();
+  const double total = law.total_shape(), a = law.shape;
+  const auto set = [&](const char* name, const Eigen::MatrixXd& columns,
+                       const DerivedQuantity& derived) {
+    const auto result = estimate({columns}, derived);
+    references_[name] = {result.mean, result.error};
+  };
+  const auto mean = [](const Eigen::VectorXd& m) { return m[0]; };
+  const auto column = [&](int index) { return Eigen::MatrixXd(samples.col(index)); };
+  // e = E - Psi, of which the kinetic and internal energies take their Dirichlet shares.
+  set("potential_energy", column(0) / n, mean);
+  set("kinetic_temperature", column(4) / (k * total), mean);
+  set("internal_temperature", column(4).cwiseInverse() * (k * (total - 1)),
+      [](const Eigen::VectorXd& m) { return 1 / m[0]; });
+  set("configurational_temperature", samples.middleCols(2, 2),
+      [&](const Eigen::VectorXd& m) { return m[0] / (k * m[1]); });
+  set("pressure", column(4) * (n / (total * box_.volume())) + column(1) / (3 * box_.volume()),
+      mean);
+  set("internal_energy_mean", column(4) * (a / total), mean);
+  Eigen::MatrixXd powers(samples.rows(), 3);
+  powers.col(0) = column(4) * (a / total);
+  powers.col(1) = column(4).array().square() * (a * (a + 1) / (total * (total + 1)));
+  powers.col(2) =
+      column(4).array().cube() * (a * (a + 1) * (a + 2) / (total * (total + 1) * (total + 2)));
+  const auto variance = [](const Eigen::VectorXd& m) { return m[1] - m[0] * m[0]; };
+  set("internal_energy_variance", powers, variance);
+  set("internal_energy_skewness", powers, [&](const Eigen::VectorXd& m) {
+    return (m[2] - 3 * m[0] * m[1] + 2 * std::pow(m[0], 3)) / std::pow(variance(m), 1.5);
+  });
+}
+
+bool PreparedScene::starts_off_equilibrium(unsigned replica) const {
+  return scene_.initial_state == InitialState::microcanonical && replicas_ >= 2 &&
+         replica + 1 == replicas_;
+}
+
+System PreparedScene::start(unsigned replica) const {
+  const Noise numbers = noise(replica);
+  const auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
+  const bool off = starts_off_equilibrium(replica);
+  State state =
+      configurations_.empty() || off
+          ? place(box_, scene_.layout,
+                  off && scene_.initial_positions == Placement::random ? Placement::lattice
+                                                                       : scene_.initial_positions,
+                  scene_.particles, scene_.pair_distance, numbers)
+          : configurations_[replica];
+  if (scene_.initial_state == InitialState::microcanonical) {
+    double energy = law.energy_at(scene_.fluid.temperature);
+    if (!configurations_.empty()) {
+      state.internal_energy.assign(state.size(), 1.0);
+      System probe(fluid_, box_, state, numbers, scene_.frozen);
+      energy = total_energy_ - centre_of_mass_energy(scene_) - probe.potential_energy();
+    }
+    (off ? draw_off_equilibrium : draw_microcanonical)(fluid_, scene_.layout, energy, numbers,
+                                                       state);
+  } else {
+    const bool rest = scene_.initial_state == InitialState::rest;
+    draw_given_spread(fluid_, scene_.layout, rest ? 0.0 : scene_.initial_velocity_spread,
+                      scene_.initial_temperature, numbers, state);
+    for (std::size_t i = 0; !rest && i < scene_.initial_velocities.size(); ++i) {
+      state.velocity[i] = scene_.initial_velocities[i];
+    }
+  }
+  boost_frame(scene_.frame_velocity, state);
+  return System(fluid_, box_, std::move(state), numbers, scene_.frozen);
+}
+
+std::optional<Reference> PreparedScene::reference(std::string_view observable) const {
+  const auto found = references_.find(observable);
+  if (found == references_.end()) return std::nullopt;
+  return found->second;
+}
+
+}  // namespace driftless

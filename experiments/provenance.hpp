@@ -1,0 +1,21 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace driftless {
+
+/// "0.1.0", "0.1.0+3f2c1d8" or "0.1.0+3f2c1d8-dirty".
+std::string version();
+
+/// Version, commit, compiler, flags, processor, threads, seed, date (UTC) and the command that
+/// repeats the run.
+nlohmann::json provenance(unsigned threads, std::uint64_t seed, const std::string& command);
+
+/// A number that changes whenever this program does: results of another program are not reused.
+std::string program_fingerprint();
+
+/// 64 bits of a text as 16 hexadecimal digits (FNV-1a).
+std::string fingerprint(const std::string& text);
+
+}  // namespace driftless

@@ -1,0 +1,41 @@
+#include "experiments/replica.hpp"
+
+#include <cmath>
+
+namespace driftless {
+
+StepPlan::StepPlan(const Study& study, double time_step)
+    : equilibrate(static_cast<std::uint64_t>(std::llround(study.equilibrate / time_step))),
+      samples(static_cast<std::uint64_t>(std::llround(study.measure / study.sample_every))),
+      steps_per_sample(static_cast<std::uint64_t>(std::llround(study.sample_every / time_step))) {}
+
+ReplicaResult run_replica(const PreparedScene& prepared, const Study& study,
+                          const MethodChoice& choice, double time_step, unsigned replica) {
+  const StepPlan plan(study, time_step);
+  const auto integrator = find_method(choice.name)->make(choice.options);
+  System system = prepared.start(replica);
+  ReplicaResult result;
+  result.replica = replica;
+  const auto advance = [&](std::uint64_t steps) {
+    for (std::uint64_t n = 0; n < steps; ++n) {
+      system.set_step(++result.steps);
+      integrator->step(system, time_step);
+    }
+  };
+  try {
+    advance(plan.equilibrate);
+    Sampler sampler(prepared, system, replica, plan.samples);
+    for (std::uint64_t sample = 0; sample < plan.samples; ++sample) {
+      advance(plan.steps_per_sample);
+      sampler.take(system, static_cast<double>(sample + 1) * study.sample_every);
+    }
+    result.record = std::move(sampler).finish();
+  } catch (const StepFailure& failure) {
+    result.failure = {replica, failure.cause(), result.steps,
+                      static_cast<double>(result.steps) * time_step};
+  }
+  result.counters = system.counters();
+  return result;
+}
+
+}  // namespace driftless

@@ -1,0 +1,129 @@
+#include "experiments/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "experiments/answers.hpp"
+#include "experiments/files.hpp"
+#include "experiments/page.hpp"
+
+namespace driftless {
+namespace {
+
+using nlohmann::json;
+
+using Row = std::vector<std::string>;
+
+/// A Markdown table, its columns padded so that a terminal shows it straight.
+std::string table(const Row& head, const std::vector<Row>& rows) {
+  std::vector<std::size_t> width;
+  for (const auto& cell : head) width.push_back(cell.size());
+  for (const auto& row : rows) {
+    for (std::size_t n = 0; n < row.size(); ++n) width[n] = std::max(width[n], row[n].size());
+  }
+  std::string text;
+  const auto line = [&](const Row& row) {
+    for (std::size_t n = 0; n < row.size(); ++n) text += fmt::format("| {:<{}} ", row[n], width[n]);
+    text += "|\n";
+  };
+  line(head);
+  for (const auto columns : width) text += "| " + std::string(columns, '-') + " ";
+  text += "|\n";
+  for (const auto& row : rows) line(row);
+  return text;
+}
+
+std::string percent(double share) { return fmt::format("{:.2g} %", 100 * share); }
+
+std::string step_text(const json& step) { return fmt::format("{:g}", step.get<double>()); }
+
+std::string answers_of(const json& result, const std::string& scene) {
+  std::vector<Row> rows;
+  for (const auto& answer : result["answers"]) {
+    if (answer["scene"] != scene || answer["observable"] != equilibrium_observable) continue;
+    Row row = {fmt::format("{:g} %", 100 * answer["tolerance"].get<double>())};
+    if (answer["method"].is_null()) {
+      row.insert(row.end(), {"none shown to be", "", "", "", ""});
+    } else {
+      const auto& next = answer["runner_up"];
+      row.insert(
+          row.end(),
+          {answer["method"], step_text(answer["time_step"]), percent(answer["upper"]),
+           fmt::format("{:.3g}", answer["cost"].get<double>()),
+           next.is_null() ? "none"
+                          : fmt::format("{} at {}, {:.3g}", next["method"].get<std::string>(),
+                                        step_text(next["time_step"]), next["cost"].get<double>())});
+    }
+    rows.push_back(row);
+  }
+  if (rows.empty()) return "";
+  return table({"tolerance", "method", "step", "wrong by at most", "core-s per time", "runner-up"},
+               rows);
+}
+
+/// What a map of methods and steps says of a cell.
+std::string verdict(const json& cell) {
+  if (cell["status"] == "not_applicable") return "not applicable";
+  if (cell["status"] != "ok") {
+    return fmt::format("{} ({} of {})", cell["status"].get<std::string>(),
+                       cell["failed_replicas"].get<int>(), cell["replicas"].get<int>());
+  }
+  const json bound = passing_bound(cell, equilibrium_observable);
+  if (!bound.is_number()) return "not resolved";
+  return "<= " + percent(bound);
+}
+
+std::string map_of(const json& result, const std::string& scene) {
+  Row head = {"method"};
+  for (const auto& step : result["study"]["time_steps"]) head.push_back(step_text(step));
+  std::vector<Row> rows;
+  std::string last;
+  for (const auto& cell : result["cells"]) {
+    if (cell["scene"] != scene) continue;
+    const std::string name = cell["method"].get<std::string>() +
+                             (cell["options"].empty() ? "" : " " + cell["options"].dump());
+    if (rows.empty() || name != last) rows.push_back({name});
+    last = name;
+    rows.back().push_back(verdict(cell));
+  }
+  return table(head, rows);
+}
+
+}  // namespace
+
+std::string summary(const json& result) {
+  const auto& provenance = result["provenance"];
+  std::string text = fmt::format("# {}\n", result["name"].get<std::string>());
+  for (const auto& scene : result["scenes"]) {
+    const std::string name = scene["name"];
+    text += fmt::format("\n## {}\n\n", name);
+    if (scene.contains("note"))
+      text += fmt::format("Note: {}.\n\n", scene["note"].get<std::string>());
+    if (const auto answers = answers_of(result, name); !answers.empty()) {
+      text +=
+          "Cheapest method and step whose kinetic temperature, internal temperature and variance "
+          "of "
+          "the internal\nenergy are all within the tolerance, at 95 % confidence:\n\n" +
+          answers + "\n";
+    }
+    text += "Bound of the worst of these errors, by method and step:\n\n" + map_of(result, name);
+  }
+  text += fmt::format(
+      "\nMade by `{}`, driftless {} ({}), {}, {} threads, {}.\n",
+      provenance["command"].get<std::string>(), provenance["version"].get<std::string>(),
+      provenance["commit"].get<std::string>().substr(0, 7), provenance["cpu"].get<std::string>(),
+      provenance["threads"].get<int>(), provenance["date"].get<std::string>());
+  return text;
+}
+
+std::filesystem::path write_report(const json& result, const std::filesystem::path& directory) {
+  const auto page = directory / "index.html";
+  write_atomically(directory / "result.json", result.dump(1) + "\n");
+  write_atomically(directory / "summary.md", summary(result));
+  write_atomically(page, render_page(result));
+  return page;
+}
+
+}  // namespace driftless

@@ -1,0 +1,198 @@
+#include "experiments/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "experiments/scene_keys.hpp"
+
+namespace driftless {
+namespace {
+
+using std::numbers::pi;
+
+/// In the paper's units T_R = m = zeta_0 = 1, so that k = 1/2; B = 0.01 and C = 17 make
+/// phi = k/B = 50 and L_0 = C phi = 850.
+Scene mackie_1999() {
+  Scene scene;
+  scene.name = scene.preset = "mackie-1999";
+  scene.fluid = {.boltzmann = 0.5,
+                 .mass = 1,
+                 .temperature = 1.1,
+                 .heat_capacity = 50,
+                 .repulsion = 0,
+                 .repulsion_range = 1,
+                 .friction = 1,
+                 .friction_closure = FrictionClosure::friction,
+                 .friction_range = 1.24,
+                 .conduction = 850,
+                 .heat_form = HeatForm::inverse_temperature,
+                 .heat_range = 1.24,
+                 .weight_exponent = 2};
+  scene.initial_temperature = scene.fluid.temperature;
+  scene.particles = 1000;
+  scene.density = 1;
+  return scene;
+}
+
+Scene soft_fluid() {
+  Scene scene;
+  scene.name = scene.preset = "soft-fluid";
+  scene.fluid = {.boltzmann = 1,
+                 .mass = 1,
+                 .temperature = 1,
+                 .heat_capacity = 60,
+                 .repulsion = 25,
+                 .repulsion_range = 1,
+                 .friction = 4.5,
+                 .friction_closure = FrictionClosure::noise,
+                 .friction_range = 1,
+                 .conduction = 1,
+                 .heat_form = HeatForm::inverse_temperature,
+                 .heat_range = 1,
+                 .weight_exponent = 2};
+  scene.particles = 648;
+  scene.density = 3;
+  return scene;
+}
+
+/// At this distance the weights are 0.49. Friction relaxes the sum of a pair's internal energies at
+/// the rate 4 zeta w/m, conduction their difference at 2 L w/(phi T^2): L_0 = 2 phi zeta_0 T^2/m
+/// makes the two alike.
+Scene two_body() {
+  Scene scene;
+  scene.name = scene.preset = "two-body";
+  scene.fluid = {.boltzmann = 1,
+                 .mass = 1,
+                 .temperature = 1,
+                 .heat_capacity = 50,
+                 .repulsion = 0,
+                 .repulsion_range = 1,
+                 .friction = 1,
+                 .friction_closure = FrictionClosure::noise,
+                 .friction_range = 1,
+                 .conduction = 100,
+                 .heat_form = HeatForm::inverse_temperature,
+                 .heat_range = 1,
+                 .weight_exponent = 2};
+  scene.layout = Layout::pairs;
+  scene.particles = 2000;
+  scene.frozen = true;
+  scene.pair_distance = 0.3;
+  scene.initial_positions = Placement::lattice;
+  return scene;
+}
+
+/// int (1 - r/range)^s r^power dr from 0 to the range: range^(power + 1) times Euler's beta
+/// function of power + 1 and s + 1.
+double weight_moment(double range, double exponent, int power) {
+  double factor = std::pow(range, power + 1) / (exponent + 1);
+  for (int n = 1; n <= power; ++n) factor *= n / (exponent + 1 + n);
+  return factor;
+}
+
+/// [w], the volume integral of the weight.
+double weight_volume(double range, double exponent) {
+  return 4 * pi * weight_moment(range, exponent, 2);
+}
+
+/// L_0, whichever form the conduction is quoted in; 0 if nothing conducts.
+double inverse_temperature_conduction(const FluidParameters& fluid) {
+  if (!fluid.has_conduction()) return 0;
+  const double square = fluid.temperature * fluid.temperature;
+  return fluid.heat_form == HeatForm::temperature ? fluid.conduction * square : fluid.conduction;
+}
+
+/// Rate at which conduction through a summed weight relaxes one particle's internal energy.
+double conduction_rate(const FluidParameters& fluid, double weight) {
+  return weight * inverse_temperature_conduction(fluid) /
+         (fluid.heat_capacity * fluid.temperature * fluid.temperature);
+}
+
+/// The slower of the two motions of a pair's energies, of those that there are: the sum follows the
+/// kinetic energy, which friction relaxes at 4 zeta w/m; conduction relaxes the difference.
+double pair_relaxation_rate(const Scene& scene) {
+  const Fluid fluid(scene.fluid);
+  const double distance = scene.pair_distance;
+  const double sum = 4 * scene.fluid.friction * fluid.friction_weight(distance) / scene.fluid.mass;
+  const double difference = 2 * conduction_rate(scene.fluid, fluid.heat_weight(distance));
+  return sum > 0 && difference > 0 ? std::min(sum, difference) : std::max(sum, difference);
+}
+
+double fluid_relaxation_rate(const Scene& scene) {
+  const auto& f = scene.fluid;
+  double rate = scene.density * conduction_rate(f, weight_volume(f.heat_range, f.weight_exponent));
+  if (f.boltzmann > 0) {
+    const double shape = f.heat_capacity / f.boltzmann + 1;
+    rate += scene.density * f.friction * weight_volume(f.friction_range, f.weight_exponent) /
+            (2 * f.mass * shape);
+  }
+  return rate;
+}
+
+/// Decay rate of a temperature wave by conduction: kappa = conductivity/(c_v density) times the
+/// wave number squared (Mackie et al. 1999, eq. 3.28; Bonet Avalos and Mackie 1999, eqs. 4.3, 4.4).
+double conduction_wave_rate(const Scene& scene, double wave_number) {
+  const auto& f = scene.fluid;
+  const double conductivity = 2 * pi / 3 * scene.density * scene.density *
+                              inverse_temperature_conduction(f) / (f.temperature * f.temperature) *
+                              weight_moment(f.heat_range, f.weight_exponent, 4);
+  const double capacity = f.heat_capacity + 2.5 * f.boltzmann;
+  return conductivity / (capacity * scene.density) * wave_number * wave_number;
+}
+
+/// The same by particles that carry their energy along: D = k T/(m w_0) with the collision rate w_0
+/// (Groot and Warren 1997); without friction they fly freely.
+double diffusion_wave_rate(const Scene& scene, double wave_number) {
+  const auto& f = scene.fluid;
+  if (scene.frozen) return 0;
+  const double thermal_square = f.boltzmann * f.temperature / f.mass;
+  if (!f.has_friction()) return std::sqrt(thermal_square) * wave_number;
+  const double collision_rate = scene.density * f.friction *
+                                weight_volume(f.friction_range, f.weight_exponent) / (3 * f.mass);
+  return thermal_square / collision_rate * wave_number * wave_number;
+}
+
+}  // namespace
+
+const std::vector<Preset>& presets() {
+  static const std::vector<Preset> all = {
+      {"mackie-1999", "The ideal fluid with friction and conduction of Mackie et al.",
+       "Mackie, Bonet Avalos, Navas, Phys. Chem. Chem. Phys. 1, 2039 (1999), section 3: B = 0.01, "
+       "C = 17, r* = 1.24, density* = 1, T* = 1.1, in units T_R = m = zeta_0 = 1",
+       mackie_1999()},
+      {"soft-fluid", "The soft fluid of most DPD work, with internal energies",
+       "Groot, Warren, J. Chem. Phys. 107, 4423 (1997): a = 25, density 3, friction 4.5; heat "
+       "capacity 60 k as in common DPDE examples",
+       soft_fluid()},
+      {"two-body", "Many isolated frozen pairs, whose exact law is known at any heat capacity",
+       "this program: one pair at a fixed distance, friction and conduction alike in speed",
+       two_body()},
+  };
+  return all;
+}
+
+const Preset* find_preset(std::string_view name) {
+  const auto& all = presets();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Preset& p) { return p.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+double relaxation_time(const Scene& scene) {
+  const double rate =
+      scene.layout == Layout::pairs ? pair_relaxation_rate(scene) : fluid_relaxation_rate(scene);
+  return rate > 0 ? 1 / rate : std::numeric_limits<double>::infinity();
+}
+
+double wave_time(const Scene& scene) {
+  if (scene.layout == Layout::pairs) return 0;
+  const double length = std::cbrt(static_cast<double>(scene.particles) / scene.density);
+  const double wave_number = 2 * pi / length;
+  const double rate =
+      conduction_wave_rate(scene, wave_number) + diffusion_wave_rate(scene, wave_number);
+  return rate > 0 ? 1 / rate : 0;
+}
+
+}  // namespace driftless

@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/scene_keys.hpp"
+
+namespace driftless {
+namespace {
+
+bool fits(const Fluid& fluid, std::size_t particles, double density) {
+  const Box box = make_box(fluid, Layout::fluid, particles, density, 0);
+  return !(box.lengths.minCoeff() < 2 * fluid.range());
+}
+
+std::size_t fewest_that_fit(const Fluid& fluid, double density) {
+  const double estimate = density * std::pow(2 * fluid.range(), 3);
+  auto particles = static_cast<std::size_t>(std::max(2.0, std::floor(estimate)));
+  while (!fits(fluid, particles, density)) ++particles;
+  return particles;
+}
+
+/// A particle must not meet a second image of another one.
+void check_box(const Scene& scene, const Fluid& fluid, const Location& location) {
+  if (fits(fluid, scene.particles, scene.density)) return;
+  const Box box = make_box(fluid, scene.layout, scene.particles, scene.density, 0);
+  const double needed = scene.density * std::pow(2 * fluid.range(), 3);
+  const std::string allowed =
+      needed < 1e7
+          ? fmt::format("at least {} particles at density {}",
+                        fewest_that_fit(fluid, scene.density), describe(scene.density))
+          : fmt::format("a lower density than {} or a shorter range", describe(scene.density));
+  location.member("particles")
+      .refuse(fmt::format("is {}, which makes a box of {}, shorter than twice the range {}; "
+                          "allowed is {}",
+                          scene.particles, describe(box.lengths.minCoeff()),
+                          describe(fluid.range()), allowed));
+}
+
+void check_pairs(const Scene& scene, const Fluid& fluid, const Location& location) {
+  if (scene.particles % 2 != 0) {
+    location.member("particles")
+        .refuse(fmt::format("is {}, which leaves one particle without a partner; allowed is an "
+                            "even number",
+                            scene.particles));
+  }
+  if (!scene.frozen) {
+    location.member("frozen").refuse(
+        "is false, but pairs are isolated only while they stand still; allowed is true");
+  }
+  if (!fluid.has_friction() && !fluid.has_conduction()) {
+    location.member("friction")
+        .refuse(
+            "is 0 and nothing conducts, so that no pair exchanges anything; allowed is "
+            "friction > 0, or conduction > 0 with a heat_form");
+  }
+  double range = fluid.range();
+  if (fluid.has_friction()) range = std::min(range, fluid.parameters().friction_range);
+  if (fluid.has_conduction()) range = std::min(range, fluid.parameters().heat_range);
+  if (scene.pair_distance >= range) {
+    location.member("pair_distance")
+        .refuse(fmt::format("is {}, beyond the range {} of what acts; allowed is a number > 0 "
+                            "and < {}",
+                            describe(scene.pair_distance), describe(range), describe(range)));
+  }
+}
+
+void check_given_velocities(const Scene& scene, const Location& location) {
+  const auto& velocities = scene.initial_velocities;
+  const Location place = location.member("initial_velocities");
+  if (!velocities.empty() && velocities.size() != scene.particles) {
+    place.refuse(
+        fmt::format("is a list of {} velocities; allowed is one for each of the {} "
+                    "particles",
+                    velocities.size(), scene.particles));
+  }
+  if (scene.layout != Layout::pairs) return;
+  for (std::size_t i = 0; i < velocities.size(); ++i) {
+    if (velocities[i][1] == 0 && velocities[i][2] == 0) continue;
+    place.element(i).refuse(fmt::format("is [{}, {}, {}], not along its pair; allowed is [x, 0, 0]",
+                                        describe(velocities[i][0]), describe(velocities[i][1]),
+                                        describe(velocities[i][2])));
+  }
+}
+
+/// The exact law is one of fluctuations.
+void check_microcanonical(const Fluid& fluid, const Location& location) {
+  if (fluid.fluctuates()) return;
+  location.member("initial_state")
+      .refuse(
+          "is \"microcanonical\", but nothing fluctuates where boltzmann is 0; allowed is "
+          "\"rest\", or \"given\" with initial_velocities or initial_velocity_spread");
+}
+
+}  // namespace
+
+void check_scene(const Scene& scene, const Location& location) try {
+  const Fluid fluid(scene.fluid);
+  if (scene.frozen && fluid.has_repulsion()) {
+    location.member("repulsion")
+        .refuse(fmt::format("is {}, but a force on frozen particles works without end; allowed is "
+                            "0 where frozen is true",
+                            describe(scene.fluid.repulsion)));
+  }
+  if (scene.layout == Layout::pairs) {
+    check_pairs(scene, fluid, location);
+  } else {
+    check_box(scene, fluid, location);
+  }
+  if (scene.initial_state == InitialState::microcanonical) check_microcanonical(fluid, location);
+  check_given_velocities(scene, location);
+} catch (const std::invalid_argument& error) {
+  location.refuse(error.what());  // a product or quotient of keys, each within its range
+}
+
+}  // namespace driftless

@@ -1,0 +1,269 @@
+#include "experiments/scene_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+
+#include "integrators/integrator.hpp"
+
+namespace driftless {
+namespace {
+
+using nlohmann::json;
+
+json to_list(const Vector& v) { return {v[0], v[1], v[2]}; }
+
+Vector to_vector(const json& list) {
+  return {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()};
+}
+
+double heat_capacity_unit(const Scene& scene) {
+  return scene.fluid.boltzmann > 0 ? scene.fluid.boltzmann : 1;
+}
+
+/// The number whose product with the unit is exactly the scene's phi, the shortest if it can be, so
+/// that a scene that is written and read again has every bit.
+double heat_capacity_in_units(const Scene& scene) {
+  const double unit = heat_capacity_unit(scene), phi = scene.fluid.heat_capacity;
+  const double ratio = phi / unit;
+  const double rounded = std::stod(fmt::format("{:.15g}", ratio));
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double candidate :
+       {rounded, ratio, std::nextafter(ratio, 0.0), std::nextafter(ratio, infinity)}) {
+    if (candidate * unit == phi) return candidate;
+  }
+  return ratio;
+}
+
+void set_boltzmann(Scene& scene, const json& value) {
+  const double ratio = heat_capacity_in_units(scene);
+  const bool had_unit = scene.fluid.boltzmann > 0;
+  scene.fluid.boltzmann = value.get<double>();
+  // phi/k is what a fluid is known by; without k only phi itself is left to keep.
+  if (had_unit && scene.fluid.boltzmann > 0) {
+    scene.fluid.heat_capacity = ratio * scene.fluid.boltzmann;
+  }
+}
+
+HeatForm heat_form_of(std::string_view word) {
+  for (const auto form : {HeatForm::none, HeatForm::inverse_temperature}) {
+    if (to_string(form) == word) return form;
+  }
+  return HeatForm::temperature;
+}
+
+/// Conducts alike near the reference temperature: lambda = L/T^2.
+void set_heat_form(Scene& scene, const json& value) {
+  auto& fluid = scene.fluid;
+  const HeatForm before = fluid.heat_form;
+  fluid.heat_form = heat_form_of(value.get<std::string>());
+  const double square = fluid.temperature * fluid.temperature;
+  if (before == HeatForm::inverse_temperature && fluid.heat_form == HeatForm::temperature) {
+    fluid.conduction /= square;
+  }
+  if (before == HeatForm::temperature && fluid.heat_form == HeatForm::inverse_temperature) {
+    fluid.conduction *= square;
+  }
+}
+
+void set_velocities(Scene& scene, const json& list) {
+  scene.initial_velocities.clear();
+  for (const auto& velocity : list) scene.initial_velocities.push_back(to_vector(velocity));
+  if (!list.empty()) scene.initial_state = InitialState::given;
+}
+
+std::string_view of_fluids(const Scene& scene) {
+  return scene.layout == Layout::fluid ? "" : "isolated pairs stand on a lattice of their own";
+}
+std::string_view of_pairs(const Scene& scene) {
+  return scene.layout == Layout::pairs ? "" : "only isolated pairs have a distance";
+}
+std::string_view of_given(const Scene& scene) {
+  return scene.initial_state == InitialState::given ? "" : "initial_state is not \"given\"";
+}
+std::string_view not_of_microcanonical(const Scene& scene) {
+  return scene.initial_state != InitialState::microcanonical
+             ? ""
+             : "initial_state is \"microcanonical\", which starts at temperature";
+}
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const auto& preset : presets()) names.emplace_back(preset.name);
+  return names;
+}
+
+/// A member of the scene or of its fluid.
+template <auto member, class AnyScene>
+auto& value_of(AnyScene& scene) {
+  if constexpr (std::is_member_object_pointer_v<decltype(member)> &&
+                std::is_invocable_v<decltype(member), AnyScene&>) {
+    return scene.*member;
+  } else {
+    return scene.fluid.*member;
+  }
+}
+
+/// A key that is a plain value of the scene or of its fluid.
+template <auto member>
+SceneKey plain(std::string_view name, ValueRule rule, std::string_view meaning,
+               std::string_view (*without_effect)(const Scene&) = nullptr) {
+  return {name,
+          std::move(rule),
+          meaning,
+          [](const Scene& scene) -> json { return value_of<member>(scene); },
+          [](Scene& scene, const json& value) {
+            auto& target = value_of<member>(scene);
+            value.get_to(target);
+          },
+          without_effect};
+}
+
+std::vector<SceneKey> keys_of_the_system() {
+  return {
+      plain<&Scene::preset>("preset", ValueRule::word(preset_names()),
+                            "the scene that the other keys override"),
+      plain<&Scene::name>("name", ValueRule::name(),
+                          "unique in a study; made from preset and overrides if not given"),
+      {"particles", ValueRule::integer(2, 10'000'000), "number of particles",
+       [](const Scene& scene) -> json { return scene.particles; },
+       [](Scene& scene, const json& value) { scene.particles = to_integer(value); }},
+      plain<&Scene::density>("density", ValueRule::positive(), "particles per volume", of_fluids),
+      {"temperature", ValueRule::positive(),
+       "temperature T of the start, and at which friction is quoted",
+       [](const Scene& scene) -> json { return scene.fluid.temperature; },
+       [](Scene& scene, const json& value) {
+         scene.fluid.temperature = scene.initial_temperature = value.get<double>();
+       }},
+      {"boltzmann", ValueRule::not_negative(),
+       "Boltzmann's constant k; 0 switches every fluctuation off and needs an initial_state",
+       [](const Scene& scene) -> json { return scene.fluid.boltzmann; }, set_boltzmann},
+      plain<&FluidParameters::mass>("mass", ValueRule::positive(), "mass m of a particle"),
+      {"heat_capacity", ValueRule::positive(),
+       "heat capacity phi of a particle in units of k; in program units where k is 0",
+       [](const Scene& scene) -> json { return heat_capacity_in_units(scene); },
+       [](Scene& scene, const json& value) {
+         scene.fluid.heat_capacity = value.get<double>() * heat_capacity_unit(scene);
+       }},
+  };
+}
+
+std::vector<SceneKey> keys_of_the_laws() {
+  return {
+      plain<&FluidParameters::repulsion>("repulsion", ValueRule::not_negative(),
+                                         "largest repulsive force a between two particles"),
+      plain<&FluidParameters::repulsion_range>("repulsion_range", ValueRule::positive(),
+                                               "distance at which the repulsion ends"),
+      plain<&FluidParameters::friction>("friction", ValueRule::not_negative(),
+                                        "friction coefficient zeta_0 at temperature T"),
+      {"friction_closure", ValueRule::word({"noise", "friction"}),
+       "which coefficient depends on the distance alone: that of the noise or that of the friction",
+       [](const Scene& scene) -> json { return to_string(scene.fluid.friction_closure); },
+       [](Scene& scene, const json& value) {
+         scene.fluid.friction_closure =
+             value == "noise" ? FrictionClosure::noise : FrictionClosure::friction;
+       }},
+      plain<&FluidParameters::friction_range>("friction_range", ValueRule::positive(),
+                                              "distance at which the friction ends"),
+      {"heat_form", ValueRule::word({"none", "inverse-temperature", "temperature"}),
+       "what drives the heat between two particles: the difference of the inverse temperatures, "
+       "that of the temperatures, or nothing",
+       [](const Scene& scene) -> json { return to_string(scene.fluid.heat_form); }, set_heat_form},
+      plain<&FluidParameters::conduction>(
+          "conduction", ValueRule::not_negative(),
+          "L_0 of the form inverse-temperature, lambda_0 = L_0/T^2 of the form temperature"),
+      plain<&FluidParameters::heat_range>("heat_range", ValueRule::positive(),
+                                          "distance at which the conduction ends"),
+      plain<&FluidParameters::weight_exponent>(
+          "weight_exponent", ValueRule::positive(),
+          "s of the weight (1 - r/range)^s of friction and conduction"),
+  };
+}
+
+std::vector<SceneKey> keys_of_the_start() {
+  return {
+      {"frame_velocity", ValueRule::vector(), "velocity [x, y, z] of the whole system",
+       [](const Scene& scene) { return to_list(scene.frame_velocity); },
+       [](Scene& scene, const json& value) { scene.frame_velocity = to_vector(value); }},
+      plain<&Scene::frozen>("frozen", ValueRule::boolean(), "particles keep their positions"),
+      plain<&Scene::pair_distance>("pair_distance", ValueRule::positive(),
+                                   "distance between the two particles of a pair", of_pairs),
+      {"initial_positions", ValueRule::word({"random", "lattice"}), "how particles are placed",
+       [](const Scene& scene) -> json { return to_string(scene.initial_positions); },
+       [](Scene& scene, const json& value) {
+         scene.initial_positions = value == "random" ? Placement::random : Placement::lattice;
+       },
+       of_fluids},
+      {"initial_velocity_spread", ValueRule::not_negative(),
+       "standard deviation of a velocity component; makes initial_state \"given\"",
+       [](const Scene& scene) -> json { return scene.initial_velocity_spread; },
+       [](Scene& scene, const json& value) {
+         scene.initial_velocity_spread = value.get<double>();
+         scene.initial_state = InitialState::given;
+       },
+       of_given},
+      {"initial_velocities", ValueRule::vectors(),
+       "one [x, y, z] per particle instead of the spread; makes initial_state \"given\"",
+       [](const Scene& scene) {
+         json list = json::array();
+         for (const auto& velocity : scene.initial_velocities) list.push_back(to_list(velocity));
+         return list;
+       },
+       set_velocities, of_given},
+      {"initial_state", ValueRule::word({"microcanonical", "rest", "given"}),
+       "velocities and internal energies at the start: drawn from the exact law, at rest, or given",
+       [](const Scene& scene) -> json { return to_string(scene.initial_state); },
+       [](Scene& scene, const json& value) {
+         scene.initial_state = value == "rest"    ? InitialState::rest
+                               : value == "given" ? InitialState::given
+                                                  : InitialState::microcanonical;
+       }},
+      {"initial_temperature", ValueRule::positive(),
+       "temperature of every particle at the start if not microcanonical; temperature if not given",
+       [](const Scene& scene) -> json { return scene.initial_temperature; },
+       [](Scene& scene, const json& value) { scene.initial_temperature = value.get<double>(); },
+       not_of_microcanonical},
+  };
+}
+
+}  // namespace
+
+// Boltzmann's constant comes before the heat capacity in its units, the temperature and the heat
+// form before the conduction that they convert, what gives velocities before the state it implies.
+const std::vector<SceneKey>& scene_keys() {
+  static const std::vector<SceneKey> keys = [] {
+    std::vector<SceneKey> all = keys_of_the_system();
+    for (auto group : {keys_of_the_laws(), keys_of_the_start()}) {
+      all.insert(all.end(), group.begin(), group.end());
+    }
+    return all;
+  }();
+  return keys;
+}
+
+std::vector<std::string> scene_key_names() {
+  std::vector<std::string> names;
+  for (const auto& key : scene_keys()) names.emplace_back(key.name);
+  return names;
+}
+
+std::string_view to_string(InitialState state) {
+  switch (state) {
+    case InitialState::microcanonical:
+      return "microcanonical";
+    case InitialState::rest:
+      return "rest";
+    case InitialState::given:
+      return "given";
+  }
+  throw std::logic_error("unknown initial state");
+}
+
+std::string_view to_string(Placement placement) {
+  return placement == Placement::random ? "random" : "lattice";
+}
+
+}  // namespace driftless

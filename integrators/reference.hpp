@@ -1,0 +1,31 @@
+#pragma once
+
+#include "model/fluid.hpp"
+#include "model/state.hpp"
+
+namespace driftless {
+
+/// Largest local error of the reference, relative and absolute, per component of the state.
+struct ReferenceTolerance {
+  double relative = 1e-11;
+  double absolute = 1e-13;
+};
+
+/// The state after `duration` in the deterministic limit of the model, k = 0, where noise and what
+/// it induces vanish together:
+///   dr/dt = p/m,  dp/dt = F^C - zeta v e,  du/dt = 1/2 zeta v^2 + lambda (theta_j - theta_i),
+/// solved by the Adams methods of SUNDIALS CVODE [Hindmarsh et al., ACM Trans. Math. Softw. 31, 363
+/// (2005)]. Total energy and momentum are conserved by the equations. Every method that claims to
+/// be consistent converges to this as its step shrinks.
+///
+/// Pairs are found by a double loop, so it is for small systems. Positions go through the periodic
+/// box without a jump and are wrapped at the end; `frozen` particles keep theirs. Ids and the order
+/// of storage are those of `start`.
+///
+/// Throws std::invalid_argument if the fluid fluctuates (boltzmann is not 0), the duration is
+/// negative or the box is shorter than twice the range; std::runtime_error naming the solver's
+/// reason if it fails.
+State reference_solution(const Fluid& fluid, const Box& box, const State& start, bool frozen,
+                         double duration, const ReferenceTolerance& tolerance = {});
+
+}  // namespace driftless

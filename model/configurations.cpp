@@ -1,0 +1,91 @@
+#include "model/configurations.hpp"
+
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <cmath>
+#include <limits>
+
+namespace driftless {
+namespace {
+
+// A path of some 0.6 of the time in which a thermal particle crosses a length unit; the stride
+// keeps most paths accepted at the sizes that one machine simulates. Neither enters the law.
+constexpr int strides = 20;
+constexpr double stride_of_unit = 0.03;
+
+State without_energies(State state) {
+  state.internal_energy.assign(state.size(), 1.0);  // any positive value: no term of it acts
+  return state;
+}
+
+Fluid conservative_part(const Fluid& fluid) {
+  auto parameters = fluid.parameters();
+  parameters.friction = 0;
+  parameters.conduction = 0;
+  return Fluid(parameters);
+}
+
+}  // namespace
+
+ConfigurationChain::ConfigurationChain(const Fluid& fluid, const Box& box, State state,
+                                       const Noise& noise)
+    : system_(conservative_part(fluid), box, without_energies(std::move(state)), noise),
+      noise_(noise) {}
+
+template <class LogWeight>
+void ConfigurationChain::advance(LogWeight&& log_weight) {
+  const auto& f = system_.fluid().parameters();
+  const double thermal = std::sqrt(f.boltzmann * f.temperature / f.mass);
+  noise_.set_step(++paths_);
+  system_.update([&](std::size_t i, Vector& velocity, double&) {
+    auto stream = noise_.particle_stream(system_.state().id[i], Purpose::initial_velocity);
+    boost::random::normal_distribution<double> normal(0, thermal);
+    for (int axis = 0; axis < 3; ++axis) velocity[axis] = normal(stream);
+  });
+  const State before = system_.state();
+  const auto log_probability = [&] {
+    return log_weight(system_.potential_energy()) -
+           system_.kinetic_energy() / (f.boltzmann * f.temperature);
+  };
+  const double start = log_probability();
+  const double stride = stride_of_unit * f.repulsion_range / thermal;
+  for (int n = 0; n < strides; ++n) {
+    system_.kick(stride / 2);
+    system_.move(stride);
+    system_.kick(stride / 2);
+  }
+  auto stream = noise_.particle_stream(0, Purpose::monte_carlo);
+  const double gain = log_probability() - start;
+  if (std::log(1 - boost::random::uniform_01<double>{}(stream)) < gain) {
+    ++accepted_;
+  } else {
+    system_.set_state(before);
+  }
+}
+
+void ConfigurationChain::advance_canonical() {
+  const auto& f = system_.fluid().parameters();
+  advance([&](double potential) { return -potential / (f.boltzmann * f.temperature); });
+}
+
+void ConfigurationChain::advance_microcanonical(double energy, double total_shape) {
+  advance([&](double potential) {
+    return potential < energy ? (total_shape - 1) * std::log(energy - potential)
+                              : -std::numeric_limits<double>::infinity();
+  });
+}
+
+ConfigurationSums configuration_sums(System& system) {
+  ConfigurationSums sums;
+  const Fluid& fluid = system.fluid();
+  if (!fluid.has_repulsion()) return sums;
+  system.for_each_pair([&](const PairList::Geometry& pair) {
+    sums.potential += fluid.potential(pair.r);
+    sums.virial += pair.r * fluid.repulsive_force(pair.r);
+    sums.laplacian += 2 * fluid.potential_laplacian(pair.r);
+  });
+  for (const auto& force : system.conservative_force()) sums.squared_force += force.squaredNorm();
+  return sums;
+}
+
+}  // namespace driftless

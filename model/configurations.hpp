@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+
+#include "model/noise.hpp"
+#include "model/system.hpp"
+
+namespace driftless {
+
+/// Samples the positions of a fluid with a potential by hybrid Monte Carlo [Duane et al., Phys.
+/// Lett. B 195, 216 (1987)]: short velocity-Verlet paths from fresh momenta, accepted or refused so
+/// that the law of positions is exact whatever the length of a path's stride. No thermostat and no
+/// integrator under test is involved, so its averages are references for all of them.
+class ConfigurationChain {
+ public:
+  /// Starts from positions in `state`; the numbers drawn follow `noise` alone.
+  ConfigurationChain(const Fluid& fluid, const Box& box, State state, const Noise& noise);
+
+  /// One path towards the canonical law exp(-Psi/kT) at the fluid's temperature.
+  void advance_canonical();
+  /// One path towards the microcanonical law (E - Psi)^(A-1): what remains of the Dirichlet law of
+  /// kinetic and internal energies, of total shape A, when these are integrated out.
+  void advance_microcanonical(double energy, double total_shape);
+
+  /// The system at the present configuration, with auxiliary velocities and no internal energies.
+  System& system() { return system_; }
+  double acceptance() const { return static_cast<double>(accepted_) / static_cast<double>(paths_); }
+
+ private:
+  /// `log_weight` of a potential energy, up to a constant.
+  template <class LogWeight>
+  void advance(LogWeight&& log_weight);
+
+  System system_;
+  Noise noise_;
+  std::uint64_t paths_ = 0, accepted_ = 0;
+};
+
+/// Sums over pairs that belong to a configuration.
+struct ConfigurationSums {
+  double potential = 0;      ///< Psi
+  double virial = 0;         ///< sum over pairs of r F
+  double squared_force = 0;  ///< sum over particles of |F_i|^2
+  double laplacian = 0;      ///< sum over particles of the Laplacian of Psi at r_i
+};
+ConfigurationSums configuration_sums(System& system);
+
+}  // namespace driftless

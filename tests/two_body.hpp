@@ -1,0 +1,233 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <vector>
+
+#include "integrators/integrator.hpp"
+#include "model/initial.hpp"
+#include "model/system.hpp"
+
+/// Ensembles of isolated, frozen pairs: copies of the smallest system whose exact law is known.
+namespace driftless::two_body {
+
+/// One kind of pair, its particles at a fixed distance with the velocities along it.
+struct Bench {
+  Fluid fluid;
+  double pair_distance;
+  double energy;  ///< of a pair, kinetic plus internal
+
+  MicrocanonicalLaw law() const { return microcanonical_law(fluid, Layout::pairs, 2); }
+  /// k T at the reference temperature.
+  double thermal_energy() const { return fluid.boltzmann() * fluid.parameters().temperature; }
+};
+
+/// The relative velocity relaxes at unit rate and u_i - u_j at `conduction_rate`, so that one unit
+/// of time is one relaxation time. k, m, T, mu and Gamma^2 all differ from 1: a misplaced power
+/// shows.
+inline Bench make_bench(double phi_over_k, FrictionClosure closure, HeatForm form,
+                        double conduction_rate = 1) {
+  FluidParameters f;
+  f.boltzmann = 0.5;
+  f.mass = 2.4;
+  f.temperature = 1.3;
+  f.heat_capacity = phi_over_k * f.boltzmann;
+  f.friction_closure = closure;
+  f.heat_form = form;
+  const double distance = 0.4, weight = (1 - distance) * (1 - distance);
+  f.friction = 0.5 * f.mass / weight;  // zeta w/mu = 1
+  // d(u_i - u_j)/dt = -2 lambda w (u_i - u_j)/phi, lambda = L/T^2
+  f.conduction = 0.5 * conduction_rate * f.heat_capacity / weight;
+  if (form == HeatForm::inverse_temperature) f.conduction *= f.temperature * f.temperature;
+  const Fluid fluid(f);
+  const auto law = microcanonical_law(fluid, Layout::pairs, 2);
+  return {fluid, distance, law.energy_at(f.temperature)};
+}
+
+/// How the copies start: in the exact law, or all in one state far away from it, nearly without
+/// kinetic energy and with most of the internal energy in one particle.
+enum class Start { exact, far };
+
+struct Pairs {
+  std::size_t count = 50;
+  Start start = Start::exact;
+  double frame_velocity = 0;  ///< of every pair's centre of mass, along its axis
+  std::uint64_t seed = 1;
+  std::uint64_t replica = 0;
+};
+
+/// What a pair is now: energies and relative velocity, the centre of mass's motion left out.
+struct PairView {
+  double velocity;  ///< (v_i - v_j).e
+  double kinetic, u_i, u_j;
+
+  double energy() const { return kinetic + u_i + u_j; }
+};
+
+/// Many copies of a bench, stepped together. A copy whose step fails is given up and the step is
+/// done again from where it began; noise follows the ids, so that no other copy notices.
+class Ensemble {
+ public:
+  Ensemble(const Bench& bench, const Pairs& pairs)
+      : bench_(bench), noise_(pairs.seed, pairs.replica), system_(build(bench, pairs)) {
+    alive_.assign(pairs.count, true);
+  }
+
+  /// One step of every copy. Throws StepFailure if no copy is to blame alone.
+  void step(Integrator& integrator, double dt) {
+    ++step_;
+    noise_.set_step(step_);
+    system_.set_step(step_);
+    before_ = system_.motion();
+    kept_ = integrator.save();
+    for (;;) {
+      try {
+        integrator.step(system_, dt);
+        break;
+      } catch (const StepFailure& failure) {
+        const auto failed =
+            failure.ids().empty() ? culprits(integrator, dt, 0, size()) : pairs_of(failure);
+        if (failed.empty()) throw;
+        give_up(failed);
+        roll_back(integrator, 0, size());
+      }
+    }
+    give_up_runaways(integrator);
+  }
+
+  std::size_t size() const { return alive_.size(); }
+  bool alive(std::size_t pair) const { return alive_[pair]; }
+  std::size_t failed() const { return failed_; }
+  const System& system() const { return system_; }
+
+  PairView view(std::size_t pair) const {
+    const auto& motion = system_.motion();
+    // e points from the second particle, at the smaller x, to the first.
+    const double v = motion.velocity[2 * pair].x() - motion.velocity[2 * pair + 1].x();
+    return {v, 0.5 * bench_.fluid.reduced_mass() * v * v, motion.internal_energy[2 * pair],
+            motion.internal_energy[2 * pair + 1]};
+  }
+  /// Kinetic energy of both particles, centre of mass included, plus internal energies.
+  double whole_energy(std::size_t pair) const {
+    const auto& motion = system_.motion();
+    double sum = 0;
+    for (const std::size_t i : {2 * pair, 2 * pair + 1}) {
+      sum +=
+          0.5 * bench_.fluid.mass() * motion.velocity[i].squaredNorm() + motion.internal_energy[i];
+    }
+    return sum;
+  }
+  Vector momentum(std::size_t pair) const {
+    const auto& velocity = system_.motion().velocity;
+    return bench_.fluid.mass() * (velocity[2 * pair] + velocity[2 * pair + 1]);
+  }
+  /// The noise of the step that was done last.
+  Noise::PairNormals normals(std::size_t pair, unsigned stage) const {
+    const auto id = static_cast<std::uint32_t>(2 * pair);
+    return noise_.pair_normals(id, id + 1, stage, true, true);
+  }
+  /// Names the coming step, so that normals() are those that it is going to use.
+  void look_ahead() { noise_.set_step(step_ + 1); }
+
+ private:
+  static System build(const Bench& bench, const Pairs& pairs) {
+    const Noise noise(pairs.seed, pairs.replica);
+    const std::size_t particles = 2 * pairs.count;
+    const Box box = make_box(bench.fluid, Layout::pairs, particles, 1, bench.pair_distance);
+    State state =
+        place(box, Layout::pairs, Placement::lattice, particles, bench.pair_distance, noise);
+    draw_microcanonical(bench.fluid, Layout::pairs, bench.energy, noise, state);
+    if (pairs.start == Start::far) start_far(bench, state);
+    boost_frame(Vector(pairs.frame_velocity, 0, 0), state);
+    return {bench.fluid, box, std::move(state), noise, true};
+  }
+
+  static void start_far(const Bench& bench, State& state) {
+    const double kinetic = 0.01 * bench.law().kinetic_energy(bench.energy);
+    const double speed = std::sqrt(kinetic / bench.fluid.mass());
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      const bool first = i % 2 == 0;
+      state.velocity[i] = Vector(first ? speed : -speed, 0, 0);
+      state.internal_energy[i] = (first ? 0.85 : 0.15) * (bench.energy - kinetic);
+    }
+  }
+
+  static std::vector<std::size_t> pairs_of(const StepFailure& failure) {
+    std::set<std::size_t> pairs;
+    for (const auto id : failure.ids()) pairs.insert(id / 2);
+    return {pairs.begin(), pairs.end()};
+  }
+
+  void give_up(const std::vector<std::size_t>& pairs) {
+    for (const std::size_t pair : pairs) alive_[pair] = false;
+    failed_ += pairs.size();
+  }
+
+  /// Explicit methods can throw a copy to an energy from where it hardly comes back, without any
+  /// number being illegal: four times the energy, or a quarter, is a failure too.
+  void give_up_runaways(Integrator& integrator) {
+    std::vector<std::size_t> runaways;
+    for (std::size_t pair = 0; pair < size(); ++pair) {
+      if (!alive_[pair]) continue;
+      const double e = view(pair).energy() / bench_.energy;
+      if (!(e < 4 && e > 0.25)) runaways.push_back(pair);
+    }
+    if (runaways.empty()) return;
+    give_up(runaways);
+    before_ = system_.motion();
+    kept_ = integrator.save();
+    roll_back(integrator, 0, size());
+  }
+
+  /// The pairs of a range that fail, where a failure names no particle: found by halving.
+  std::vector<std::size_t> culprits(Integrator& integrator, double dt, std::size_t first,
+                                    std::size_t last) {
+    roll_back(integrator, first, last);
+    try {
+      integrator.step(system_, dt);
+      return {};
+    } catch (const StepFailure& failure) {
+      if (!failure.ids().empty()) return pairs_of(failure);
+      if (last - first == 1) return {first};
+      const std::size_t middle = (first + last) / 2;
+      auto found = culprits(integrator, dt, first, middle);
+      const auto others = culprits(integrator, dt, middle, last);
+      found.insert(found.end(), others.begin(), others.end());
+      return found;
+    }
+  }
+
+  /// Back to before the step, without the pairs that failed or lie outside of a range: the two
+  /// particles of such a pair are put on one spot, where a pair has no direction and exchanges
+  /// nothing. They keep their places in storage, so that what an integrator keeps from step to step
+  /// stays in order.
+  void roll_back(Integrator& integrator, std::size_t first, std::size_t last) {
+    State state = system_.state();
+    state.velocity = before_.velocity;
+    state.internal_energy = before_.internal_energy;
+    for (std::size_t pair = 0; pair < size(); ++pair) {
+      const bool present = alive_[pair] && first <= pair && pair < last;
+      const auto i = 2 * pair, j = i + 1;
+      state.position[j] = state.position[i];
+      if (present) state.position[j].x() -= bench_.pair_distance;
+      if (alive_[pair]) continue;
+      state.velocity[i] = state.velocity[j] = Vector::Zero();
+      // whatever an impulse kept from the step before may still do to it
+      state.internal_energy[i] = state.internal_energy[j] = 100 * bench_.energy;
+    }
+    system_.set_state(std::move(state));
+    if (!kept_.empty()) integrator.load(kept_);
+  }
+
+  Bench bench_;
+  Noise noise_;
+  System system_;
+  std::uint64_t step_ = 0;
+  std::vector<bool> alive_;
+  std::size_t failed_ = 0;
+  Motion before_;
+  std::vector<double> kept_;  ///< by the integrator, before the step
+};
+
+}  // namespace driftless::two_body
