@@ -9,7 +9,8 @@ namespace {
 
 // The Monte Carlo run of a fluid with repulsion, in paths: enough for the start to be forgotten (a
 // path moves a particle by half a diameter), and for references better than most studies.
-constexpr int pilot_burn_in = 60, pilot_paths = 120, burn_in = 40, chain_paths = 400;
+constexpr int relaxation_paths = 30, pilot_burn_in = 40, pilot_paths = 120;
+constexpr int burn_in = 40, chain_paths = 400;
 constexpr std::uint64_t pilot_seed = 0;  // the energy belongs to the scene, not to the study
 
 double centre_of_mass_energy(const Scene& scene) {
@@ -92,6 +93,7 @@ void PreparedScene::prepare_with_repulsion() {
                  numbers);
   };
   ConfigurationChain pilot(fluid_, box_, placed({pilot_seed, 0}), {pilot_seed, 0});
+  for (int path = 0; path < relaxation_paths; ++path) pilot.relax();
   double potential = 0;
   for (int path = 0; path < pilot_burn_in + pilot_paths; ++path) {
     pilot.advance_canonical();

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <limits>
 #include <stdexcept>
+#include <string>
 #include <type_traits>
 
 #include "integrators/integrator.hpp"
@@ -24,18 +23,13 @@ double heat_capacity_unit(const Scene& scene) {
   return scene.fluid.boltzmann > 0 ? scene.fluid.boltzmann : 1;
 }
 
-/// The number whose product with the unit is exactly the scene's phi, the shortest if it can be, so
-/// that a scene that is written and read again has every bit.
+/// phi in units of k, as a person would write it: 100, where the quotient of two doubles may be
+/// 99.99999999999999. Its product with the unit is the scene's phi to the last bit either way.
 double heat_capacity_in_units(const Scene& scene) {
   const double unit = heat_capacity_unit(scene), phi = scene.fluid.heat_capacity;
   const double ratio = phi / unit;
   const double rounded = std::stod(fmt::format("{:.15g}", ratio));
-  const double infinity = std::numeric_limits<double>::infinity();
-  for (const double candidate :
-       {rounded, ratio, std::nextafter(ratio, 0.0), std::nextafter(ratio, infinity)}) {
-    if (candidate * unit == phi) return candidate;
-  }
-  return ratio;
+  return rounded * unit == phi ? rounded : ratio;
 }
 
 void set_boltzmann(Scene& scene, const json& value) {

@@ -39,6 +39,7 @@ class IsoenergeticVerlet : public Integrator {
   }
 
   void load(const std::vector<double>& saved) override {
+    if (saved.empty()) return;  // saved before the first step
     const std::size_t particles = (saved.size() - 1) / 4;
     evaluated_for_ = saved[0];
     impulse_.reset(particles);

@@ -6,9 +6,10 @@ namespace {
 
 /// Shardlow splitting, symmetric [Shardlow 2003, S2; with internal energies as in Lisal, Brennan,
 /// Avalos 2011]: half a sweep, velocity Verlet with the conservative forces alone, half a sweep in
-/// reverse order with noise of its own. Second order where temperatures do not change; with
-/// internal energies the coefficients frozen at the start of a pair's update leave it at first
-/// order. Conserves momentum, and energy to rounding without a potential.
+/// reverse order with noise of its own. Noise-free it is of second order under the closure
+/// `friction` without conduction; the friction frozen at the start of a pair's update under the
+/// closure `noise`, and the Euler step of conduction, leave it at first order. Conserves momentum,
+/// and energy to rounding without a potential.
 class ShardlowS2 : public Integrator {
  public:
   explicit ShardlowS2(bool as_published) : as_published_(as_published) {}

@@ -4,14 +4,16 @@
 #include <boost/random/uniform_01.hpp>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace driftless {
 namespace {
 
-// A path of some 0.6 of the time in which a thermal particle crosses a length unit; the stride
-// keeps most paths accepted at the sizes that one machine simulates. Neither enters the law.
-constexpr int strides = 20;
-constexpr double stride_of_unit = 0.03;
+// A path lasts 0.6 of the time in which a thermal particle crosses the range; its strides shrink
+// with the number of particles so that most paths are accepted at any size. Neither enters the law.
+constexpr double path_length = 0.6;
+constexpr double stride_of_one_particle = 0.15;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 State without_energies(State state) {
   state.internal_energy.assign(state.size(), 1.0);  // any positive value: no term of it acts
@@ -48,7 +50,10 @@ void ConfigurationChain::advance(LogWeight&& log_weight) {
            system_.kinetic_energy() / (f.boltzmann * f.temperature);
   };
   const double start = log_probability();
-  const double stride = stride_of_unit * f.repulsion_range / thermal;
+  const double fourth_root = std::pow(static_cast<double>(system_.size()), 0.25);
+  const int strides =
+      static_cast<int>(std::ceil(path_length * fourth_root / stride_of_one_particle));
+  const double stride = path_length / strides * f.repulsion_range / thermal;
   for (int n = 0; n < strides; ++n) {
     system_.kick(stride / 2);
     system_.move(stride);
@@ -63,6 +68,12 @@ void ConfigurationChain::advance(LogWeight&& log_weight) {
   }
 }
 
+void ConfigurationChain::relax() {
+  // Of infinite weight wherever it ends, so accepted.
+  bool ended = false;
+  advance([&](double) { return std::exchange(ended, true) ? infinity : 0.0; });
+}
+
 void ConfigurationChain::advance_canonical() {
   const auto& f = system_.fluid().parameters();
   advance([&](double potential) { return -potential / (f.boltzmann * f.temperature); });
@@ -70,8 +81,7 @@ void ConfigurationChain::advance_canonical() {
 
 void ConfigurationChain::advance_microcanonical(double energy, double total_shape) {
   advance([&](double potential) {
-    return potential < energy ? (total_shape - 1) * std::log(energy - potential)
-                              : -std::numeric_limits<double>::infinity();
+    return potential < energy ? (total_shape - 1) * std::log(energy - potential) : -infinity;
   });
 }
 

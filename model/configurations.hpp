@@ -16,6 +16,9 @@ class ConfigurationChain {
   /// Starts from positions in `state`; the numbers drawn follow `noise` alone.
   ConfigurationChain(const Fluid& fluid, const Box& box, State state, const Noise& noise);
 
+  /// One path accepted whatever it does: away from a start (a lattice) so unlike the fluid that the
+  /// strides' error would refuse every path out of it. Belongs before the paths that count.
+  void relax();
   /// One path towards the canonical law exp(-Psi/kT) at the fluid's temperature.
   void advance_canonical();
   /// One path towards the microcanonical law (E - Psi)^(A-1): what remains of the Dirichlet law of
@@ -24,6 +27,7 @@ class ConfigurationChain {
 
   /// The system at the present configuration, with auxiliary velocities and no internal energies.
   System& system() { return system_; }
+  /// Share of the paths accepted so far.
   double acceptance() const { return static_cast<double>(accepted_) / static_cast<double>(paths_); }
 
  private:

@@ -142,7 +142,7 @@ void draw_off_equilibrium(const Fluid& fluid, Layout layout, double energy, cons
   const double kinetic = 0.5 * law.kinetic_energy(energy);
   for_each_island(layout, state, [&](std::size_t first, std::size_t last) {
     const double present = 0.5 * fluid.mass() * squared_speeds(state, first, last);
-    const double scale = std::sqrt(kinetic / present);
+    const double scale = present > 0 ? std::sqrt(kinetic / present) : 0;  // one particle: none
     for (std::size_t i = first; i < last; ++i) {
       state.velocity[i] *= scale;
       state.internal_energy[i] = (energy - kinetic) / static_cast<double>(last - first);

@@ -23,7 +23,7 @@ void NoiseStream::refill() {
 }
 
 Noise::Noise(std::uint64_t seed, std::uint64_t replica) {
-  // Philox itself mixes seed and replica into the key, so that no two replicas share one.
+  // Philox itself mixes seed and replica into the key: two share one with a chance of 2^-64.
   const Philox::ctr_type counter = {
       {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
        static_cast<std::uint32_t>(replica), static_cast<std::uint32_t>(replica >> 32)}};

@@ -20,7 +20,8 @@ enum class Purpose : std::uint8_t {
 
 /// A uniform random bit generator (64 bits a call) over one key and one counter of Philox4x32-10
 /// (Salmon et al., SC11, 2011): any distribution of Boost.Random or <random> accepts it. Copies are
-/// independent readers of the same numbers.
+/// independent readers of the same numbers. Good for 500 words; no distribution here draws more
+/// than a few.
 class NoiseStream {
  public:
   using result_type = std::uint64_t;

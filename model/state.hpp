@@ -29,6 +29,10 @@ struct Box {
   Vector lengths;
 
   double volume() const { return lengths.prod(); }
+  /// Whether a position is inside; one that is not finite is not.
+  bool contains(const Vector& position) const {
+    return (position.array() >= 0).all() && (position.array() < lengths.array()).all();
+  }
   /// The image of a position inside the box.
   Vector wrap(const Vector& position) const;
   /// The shortest image of a difference of two positions.

@@ -7,7 +7,8 @@
 namespace driftless {
 namespace {
 
-void require_valid(const State& state) {
+/// Brings positions into the box; throws std::invalid_argument if the state makes no sense.
+State valid(const Box& box, State state) {
   const std::size_t particles = state.size();
   if (state.velocity.size() != particles || state.internal_energy.size() != particles ||
       state.id.size() != particles) {
@@ -18,6 +19,11 @@ void require_valid(const State& state) {
   if (std::adjacent_find(ids.begin(), ids.end()) != ids.end()) {
     throw std::invalid_argument("two particles of a state have the same id");
   }
+  for (auto& position : state.position) {
+    position = box.wrap(position);
+    if (!box.contains(position)) throw std::invalid_argument("a position is not finite");
+  }
+  return state;
 }
 
 }  // namespace
@@ -25,13 +31,10 @@ void require_valid(const State& state) {
 System::System(const Fluid& fluid, const Box& box, State state, const Noise& noise, bool frozen)
     : fluid_(fluid),
       box_(box),
-      state_(std::move(state)),
+      state_(valid(box, std::move(state))),
       noise_(noise),
       frozen_(frozen),
-      pairs_(box, fluid, state_.size()) {
-  require_valid(state_);
-  for (auto& position : state_.position) position = box_.wrap(position);
-}
+      pairs_(box, fluid, state_.size()) {}
 
 PairList& System::up_to_date_pairs() {
   pairs_.update(state_, fluid_, positions_version_);
@@ -86,10 +89,14 @@ void System::kick(double duration) {
 void System::move(double duration) {
   if (frozen_) return;
   check();
+  std::vector<std::uint32_t> lost;
   for (std::size_t i = 0; i < size(); ++i) {
     state_.position[i] = box_.wrap(state_.position[i] + duration * state_.velocity[i]);
+    if (!box_.contains(state_.position[i])) lost.push_back(state_.id[i]);
   }
   ++positions_version_;
+  // So far beyond the box that rounding leaves no image inside.
+  if (!lost.empty()) throw StepFailure(FailureCause::non_finite, std::move(lost));
 }
 
 void System::renew_conservative() {
@@ -144,9 +151,7 @@ Vector System::momentum() const {
 }
 
 void System::set_state(State state) {
-  require_valid(state);
-  state_ = std::move(state);
-  for (auto& position : state_.position) position = box_.wrap(position);
+  state_ = valid(box_, std::move(state));
   ++positions_version_;
 }
 

@@ -173,8 +173,8 @@ void System::sweep(Kernel&& kernel, SweepOrder order, unsigned stage) {
     u_i += transfer.energy_i;
     u_j += transfer.energy_j;
     // A later pair could lift an energy above zero again: a fault in passing is a fault.
-    if (!(u_i > 0)) failed.push_back(g.i);
-    if (!(u_j > 0)) failed.push_back(g.j);
+    if (u_i <= 0) failed.push_back(g.i);
+    if (u_j <= 0) failed.push_back(g.j);
   }
   counters_.pair_evaluations += pairs.size();
   check(failed);

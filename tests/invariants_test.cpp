@@ -15,7 +15,8 @@ constexpr double boltzmann = 0.5;  // phi/k = 24
 constexpr double time_step = 0.01;
 constexpr std::uint64_t steps = 20;
 
-/// Differences of at most this are rounding after 20 steps; what is broken is broken by a thousand times more.
+/// Differences of at most this are rounding after 20 steps; what is broken is broken by a thousand
+/// times more.
 constexpr double rounding = 1e-11;
 constexpr double visible = 1e-8;
 
@@ -342,8 +343,7 @@ TEST_P(Invariants, HoldWithEveryFlagSet) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Invariants, ::testing::ValuesIn(methods()),
-                         [](const auto& param) { return identifier(param.param->name); });
+INSTANTIATE_TEST_SUITE_P(Methods, Invariants, ::testing::ValuesIn(methods()));
 
 TEST(Registry, RefusesANameTwiceAndTakesMethodsFromOutside) {
   Method method = *methods().front();

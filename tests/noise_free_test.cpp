@@ -296,8 +296,7 @@ TEST_P(NoiseFree, ConvergesWithAPotentialToo) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, NoiseFree, ::testing::ValuesIn(methods()),
-                         [](const auto& param) { return identifier(param.param->name); });
+INSTANTIATE_TEST_SUITE_P(Methods, NoiseFree, ::testing::ValuesIn(methods()));
 
 // With the closure `friction` nothing in a pair's friction depends on its temperatures, and the
 // symmetric sweep is of second order. The closure `noise` changes zeta within the pair's update,

@@ -2,7 +2,7 @@
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 
-#include "integrators/flows.hpp"
+#include "tests/planted_schemes.hpp"
 #include "tests/two_body_checks.hpp"
 
 // Tests of the tests: the misprints of the sources and the mistakes that are easily made, each put
@@ -10,78 +10,6 @@
 // without a fault passes all of them.
 namespace driftless::two_body {
 namespace {
-
-using PairExchange = std::function<Transfer<double>(const Fluid&, const Pair<double>&, double)>;
-
-/// Euler-Maruyama for isolated frozen pairs with an exchange given from outside.
-class Scheme : public Integrator {
- public:
-  explicit Scheme(PairExchange exchange) : pair_exchange_(std::move(exchange)) {}
-
-  void step(System& system, double dt) override {
-    const Fluid& fluid = system.fluid();
-    system.accumulate([&](const Pair<double>& pair) { return pair_exchange_(fluid, pair, dt); },
-                      exchange_);
-    system.apply(exchange_);
-  }
-
- private:
-  PairExchange pair_exchange_;
-  Exchange exchange_;
-};
-
-Factory scheme(PairExchange exchange) {
-  return [exchange = std::move(exchange)] { return std::make_unique<Scheme>(exchange); };
-}
-
-Factory registered(std::string_view name, Options options = {}) {
-  const Method* method = find_method(name);
-  if (!method) throw std::logic_error("no method named " + std::string(name));
-  return [method, options = std::move(options)] { return method->make(options); };
-}
-
-/// euler_friction with another friction law.
-Transfer<double> friction_by(const FrictionLaw<double>& law, const Fluid& fluid,
-                             const Pair<double>& pair, double dt) {
-  const double drag = (law.friction + law.induced) * pair.v * dt;
-  const double kick = std::sqrt(law.noise_squared * dt) * pair.noise;
-  const double heat =
-      0.5 * (pair.v * (drag - kick) - law.noise_squared * dt / (2 * fluid.reduced_mass()));
-  return {kick - drag, heat, heat};
-}
-
-/// The sound exchange but for a change of the friction law.
-PairExchange with_friction(std::function<void(FrictionLaw<double>&)> change) {
-  return [change = std::move(change)](const Fluid& fluid, const Pair<double>& pair, double dt) {
-    auto law = fluid.friction(pair);
-    change(law);
-    auto total = friction_by(law, fluid, pair, dt);
-    return total += euler_conduction(fluid, pair, dt);
-  };
-}
-
-/// The sound exchange but for the heat, which goes to i and to j.
-PairExchange with_heat(
-    std::function<Transfer<double>(const ConductionLaw<double>&, const Pair<double>&, double)>
-        heat) {
-  return [heat = std::move(heat)](const Fluid& fluid, const Pair<double>& pair, double dt) {
-    auto total = euler_friction(fluid, pair, dt);
-    return total += heat(fluid.conduction(pair), pair, dt);
-  };
-}
-
-/// The sound exchange but for the energy that each particle receives from friction, given drag,
-/// kick and the relative velocity's change.
-PairExchange with_work(std::function<double(const Fluid&, double, double, double)> work) {
-  return [work = std::move(work)](const Fluid& fluid, const Pair<double>& pair, double dt) {
-    const auto law = fluid.friction(pair);
-    const double drag = (law.friction + law.induced) * pair.v * dt;
-    const double kick = std::sqrt(law.noise_squared * dt) * pair.noise;
-    const double heat = work(fluid, pair.v, drag, kick);
-    Transfer<double> total{kick - drag, heat, heat};
-    return total += euler_conduction(fluid, pair, dt);
-  };
-}
 
 Bench nearly_isothermal() {
   return make_bench(50, FrictionClosure::noise, HeatForm::inverse_temperature);
@@ -186,34 +114,6 @@ TEST(PlantedFaults, HeatNoiseOfOneSign) {
   EXPECT_FALSE(limit_is_exact(ladder, 1));
   EXPECT_FALSE(energy_drifts(ladder));  // the walk of the energy does not shrink with the step
 }
-
-/// Heat noises of i and j drawn independently.
-class IndependentHeatNoises : public Integrator {
- public:
-  void step(System& system, double dt) override {
-    const Fluid& fluid = system.fluid();
-    const auto noise = [&](const Pair<double>& pair) {
-      return std::sqrt(fluid.conduction(pair).noise_squared * dt) * pair.heat_noise;
-    };
-    system.accumulate(
-        [&](const Pair<double>& pair) {
-          auto total = euler_exchange(fluid, pair, dt);
-          total.energy_j += noise(pair);
-          return total;
-        },
-        first_);
-    system.accumulate(
-        [&](const Pair<double>& pair) {
-          return Transfer<double>{0, 0, noise(pair)};
-        },
-        second_, 1);
-    system.apply(first_);
-    system.apply(second_);
-  }
-
- private:
-  Exchange first_, second_;
-};
 
 TEST(PlantedFaults, HeatNoiseNotAntisymmetric) {
   const auto ladder =

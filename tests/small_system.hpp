@@ -1,14 +1,22 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <memory>
+#include <ostream>
 #include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "integrators/integrator.hpp"
+
+namespace driftless {
+
+/// Makes a method's name the name of its tests.
+inline void PrintTo(const Method* method, std::ostream* stream) { *stream << method->name; }
+
+}  // namespace driftless
 
 /// Small dense systems on which every term of the model acts, and what tests do with them.
 namespace driftless::testing {
@@ -127,35 +135,6 @@ inline Distance distance(const Box& box, const State& a, const State& b) {
 inline bool same_bits(const State& a, const State& b) {
   return a.position == b.position && a.velocity == b.velocity &&
          a.internal_energy == b.internal_energy && a.id == b.id;
-}
-
-/// A case of a suite over the registry: a method and the terms that it runs with.
-struct MethodCase {
-  const Method* method;
-  Terms terms;
-  std::string name() const { return std::string(method->name) + ", " + terms.name(); }
-};
-
-/// Every method with each closure that it claims, each heat form, without and with a potential.
-inline std::vector<MethodCase> all_cases() {
-  std::vector<MethodCase> cases;
-  for (const Method* method : methods()) {
-    for (const auto closure : method->closures) {
-      for (const auto heat : all_heat_forms()) {
-        for (const bool potential : {false, true}) {
-          cases.push_back({method, {closure, heat, potential}});
-        }
-      }
-    }
-  }
-  return cases;
-}
-
-/// "averaged_drift": a method's name as a test's name allows it.
-inline std::string identifier(std::string_view name) {
-  std::string text(name);
-  for (char& c : text) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-  return text;
 }
 
 }  // namespace driftless::testing

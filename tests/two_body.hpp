@@ -6,44 +6,11 @@
 #include <vector>
 
 #include "integrators/integrator.hpp"
-#include "model/initial.hpp"
 #include "model/system.hpp"
+#include "tests/two_body_bench.hpp"
 
 /// Ensembles of isolated, frozen pairs: copies of the smallest system whose exact law is known.
 namespace driftless::two_body {
-
-/// One kind of pair, its particles at a fixed distance with the velocities along it.
-struct Bench {
-  Fluid fluid;
-  double pair_distance;
-  double energy;  ///< of a pair, kinetic plus internal
-
-  MicrocanonicalLaw law() const { return microcanonical_law(fluid, Layout::pairs, 2); }
-  /// k T at the reference temperature.
-  double thermal_energy() const { return fluid.boltzmann() * fluid.parameters().temperature; }
-};
-
-/// The relative velocity relaxes at unit rate and u_i - u_j at `conduction_rate`, so that one unit
-/// of time is one relaxation time. k, m, T, mu and Gamma^2 all differ from 1: a misplaced power
-/// shows.
-inline Bench make_bench(double phi_over_k, FrictionClosure closure, HeatForm form,
-                        double conduction_rate = 1) {
-  FluidParameters f;
-  f.boltzmann = 0.5;
-  f.mass = 2.4;
-  f.temperature = 1.3;
-  f.heat_capacity = phi_over_k * f.boltzmann;
-  f.friction_closure = closure;
-  f.heat_form = form;
-  const double distance = 0.4, weight = (1 - distance) * (1 - distance);
-  f.friction = 0.5 * f.mass / weight;  // zeta w/mu = 1
-  // d(u_i - u_j)/dt = -2 lambda w (u_i - u_j)/phi, lambda = L/T^2
-  f.conduction = 0.5 * conduction_rate * f.heat_capacity / weight;
-  if (form == HeatForm::inverse_temperature) f.conduction *= f.temperature * f.temperature;
-  const Fluid fluid(f);
-  const auto law = microcanonical_law(fluid, Layout::pairs, 2);
-  return {fluid, distance, law.energy_at(f.temperature)};
-}
 
 /// How the copies start: in the exact law, or all in one state far away from it, nearly without
 /// kinetic energy and with most of the internal energy in one particle.
@@ -55,14 +22,6 @@ struct Pairs {
   double frame_velocity = 0;  ///< of every pair's centre of mass, along its axis
   std::uint64_t seed = 1;
   std::uint64_t replica = 0;
-};
-
-/// What a pair is now: energies and relative velocity, the centre of mass's motion left out.
-struct PairView {
-  double velocity;  ///< (v_i - v_j).e
-  double kinetic, u_i, u_j;
-
-  double energy() const { return kinetic + u_i + u_j; }
 };
 
 /// Many copies of a bench, stepped together. A copy whose step fails is given up and the step is
@@ -122,12 +81,11 @@ class Ensemble {
     const auto& velocity = system_.motion().velocity;
     return bench_.fluid.mass() * (velocity[2 * pair] + velocity[2 * pair + 1]);
   }
-  /// The noise of the step that was done last.
+  /// The noise of the step that was done last or, after look_ahead(), of the next one.
   Noise::PairNormals normals(std::size_t pair, unsigned stage) const {
     const auto id = static_cast<std::uint32_t>(2 * pair);
     return noise_.pair_normals(id, id + 1, stage, true, true);
   }
-  /// Names the coming step, so that normals() are those that it is going to use.
   void look_ahead() { noise_.set_step(step_ + 1); }
 
  private:

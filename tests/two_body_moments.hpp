@@ -3,7 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "tests/two_body.hpp"
+#include "model/noise.hpp"
+#include "tests/two_body_bench.hpp"
 
 /// What is averaged over pairs, and the noise polynomials that sharpen the averages.
 namespace driftless::two_body {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "tests/two_body.hpp"
 #include "tests/two_body_moments.hpp"
 
 /// Time averages over an ensemble of pairs, with errors from the scatter of independent copies.
@@ -61,13 +62,34 @@ inline Measured mean_of(const std::vector<double>& values) {
   return {x.mean(), std::sqrt((x - x.mean()).square().sum() / (count - 1) / count)};
 }
 
+/// How many independent noises of a pair a step of the method uses, from what the system counts.
+inline unsigned stages_of(const Bench& bench, const Factory& make) {
+  Pairs few;
+  few.count = 10;
+  Ensemble ensemble(bench, few);
+  const auto integrator = make();
+  const double harmless = 1e-6;  // so small a step that none fails and has to be done again
+  // The first step may draw more than the others.
+  ensemble.step(*integrator, harmless);
+  const auto before = ensemble.system().counters().random_numbers;
+  ensemble.step(*integrator, harmless);
+  const auto drawn = ensemble.system().counters().random_numbers - before;
+  const unsigned kinds =
+      (bench.fluid.has_friction() ? 1U : 0U) + (bench.fluid.has_conduction() ? 1U : 0U);
+  return static_cast<unsigned>(drawn / (few.count * kinds));
+}
+
 /// One ensemble from its start to its end, a row of sums per pair.
 class Trajectory {
  public:
-  Trajectory(const Bench& bench, Integrator& integrator, const Schedule& run)
-      : law_(bench.law().shape), integrator_(integrator), run_(run), ensemble_(bench, run.pairs) {
+  Trajectory(const Bench& bench, Integrator& integrator, const Schedule& run, unsigned stages)
+      : law_(bench.law().shape),
+        integrator_(integrator),
+        run_(run),
+        ensemble_(bench, run.pairs),
+        stages_(stages) {
     remember(start_);
-    settle(bench);
+    for (int n = 0; n < steps(run_.settle); ++n) ensemble_.step(integrator_, run_.dt);
     remember(settled_);
     observe();
   }
@@ -97,7 +119,6 @@ class Trajectory {
     return (ensemble_.momentum(pair) - start_[pair].momentum).norm();
   }
   std::size_t failed() const { return ensemble_.failed(); }
-  unsigned stages() const { return stages_; }
 
  private:
   struct Kept {
@@ -110,19 +131,6 @@ class Trajectory {
     }
   }
   int steps(double time) const { return static_cast<int>(std::lround(time / run_.dt)); }
-
-  void settle(const Bench& bench) {
-    // The first step may draw more noise than the others; the second one tells how much it takes.
-    ensemble_.step(integrator_, run_.dt);
-    const auto before = ensemble_.system().counters().random_numbers;
-    ensemble_.step(integrator_, run_.dt);
-    const auto drawn = ensemble_.system().counters().random_numbers - before;
-    const auto kinds =
-        (bench.fluid.has_friction() ? 1 : 0) + (bench.fluid.has_conduction() ? 1 : 0);
-    stages_ = static_cast<unsigned>(
-        std::lround(static_cast<double>(drawn) / static_cast<double>(kinds * ensemble_.size())));
-    for (int n = 2; n < steps(run_.settle); ++n) ensemble_.step(integrator_, run_.dt);
-  }
 
   void observe() {
     sums_.assign(ensemble_.size(), {});
@@ -150,7 +158,7 @@ class Trajectory {
   Integrator& integrator_;
   Schedule run_;
   Ensemble ensemble_;
-  unsigned stages_ = 0;
+  unsigned stages_;
   double samples_ = 0;
   std::vector<Kept> start_, settled_;
   std::vector<std::array<double, moments>> sums_;
@@ -169,14 +177,13 @@ inline Outcome measure(const Bench& bench, const Factory& make, const Schedule& 
   std::vector<double> averages, controls, gains, changes;
   Outcome outcome;
   double failed = 0;
-  unsigned stages = 0;
+  const unsigned stages = stages_of(bench, make);
   for (std::size_t n = 0; n < run.ensembles; ++n) {
     Schedule one = run;
     one.pairs.replica = n;
     const auto integrator = make();
-    const Trajectory trajectory(bench, *integrator, one);
+    const Trajectory trajectory(bench, *integrator, one, stages);
     trajectory.append(averages, controls);
-    stages = trajectory.stages();
     failed += static_cast<double>(trajectory.failed());
     trajectory.for_survivors([&](std::size_t pair) {
       gains.push_back(trajectory.energy_gain(pair));

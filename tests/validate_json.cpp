@@ -6,7 +6,7 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "tests/json_schema.hpp"
+#include "json_schema.hpp"
 
 namespace {
 
