@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -22,6 +23,7 @@ const std::vector<std::string> equilibrium_parts = {"kinetic_temperature", "inte
 struct Candidate {
   std::string method;
   double time_step, cost, upper;
+  bool consistent;
   json to_json() const {
     return {{"method", method}, {"time_step", time_step}, {"cost", cost}, {"upper", upper}};
   }
@@ -37,16 +39,24 @@ std::string label(const json& cell) {
   return text;
 }
 
+/// Whether a method claims the model as its limit; one that the result does not list does.
+bool is_consistent(const json& result, const std::string& method) {
+  for (const auto& record : result["methods"]) {
+    if (record["name"] == method) return record["consistent"];
+  }
+  return true;
+}
+
 /// Each method's cheapest passing cell, cheapest first.
-std::vector<Candidate> passing(const json& cells, const std::string& scene,
+std::vector<Candidate> passing(const json& result, const std::string& scene,
                                const std::string& observable, double tolerance) {
   std::map<std::string, Candidate> cheapest;
-  for (const auto& cell : cells) {
+  for (const auto& cell : result["cells"]) {
     if (cell["scene"] != scene || !cell["cost"]["core_seconds_per_time"].is_number()) continue;
     const json upper = passing_bound(cell, observable);
     if (!upper.is_number() || upper.get<double>() > tolerance) continue;
     const Candidate candidate{label(cell), cell["time_step"], cell["cost"]["core_seconds_per_time"],
-                              upper};
+                              upper, is_consistent(result, cell["method"])};
     const auto [known, added] = cheapest.emplace(candidate.method, candidate);
     if (!added && candidate.cost < known->second.cost) known->second = candidate;
   }
@@ -66,26 +76,51 @@ std::string subject(const std::string& observable) {
   return "the " + words;
 }
 
+/// What an answer rests on: the cheapest methods whose limit is the model, and the cheapest method
+/// of another limit if that is cheaper still. Right in this study's equilibrium, it need not be
+/// elsewhere.
+struct Ranking {
+  std::vector<Candidate> consistent;
+  std::optional<Candidate> cheaper_inconsistent;
+
+  explicit Ranking(const std::vector<Candidate>& passed) {
+    for (const auto& candidate : passed) {
+      if (candidate.consistent) {
+        consistent.push_back(candidate);
+      } else if (consistent.empty() && !cheaper_inconsistent) {
+        cheaper_inconsistent = candidate;
+      }
+    }
+  }
+};
+
 std::string sentence(const std::string& scene, const std::string& observable, double tolerance,
-                     const std::vector<Candidate>& passed) {
-  const std::string aim =
-      fmt::format("For {}, to have {} within {:g} %", scene, subject(observable), 100 * tolerance);
-  if (passed.empty()) return aim + ": no method and step of this study is shown to be.";
-  const auto& best = passed.front();
-  std::string text = fmt::format(
-      "{}: {} at step {:g}, {:.3g} core-seconds per unit time, wrong by at most {:.2g} %", aim,
-      best.method, best.time_step, best.cost, 100 * best.upper);
-  if (passed.size() > 1) {
-    const auto& next = passed[1];
+                     const Ranking& ranking) {
+  std::string text = fmt::format("For {}, to have {} within {:g} %: ", scene, subject(observable),
+                                 100 * tolerance);
+  if (ranking.consistent.empty()) {
+    text += "no method and step of this study is shown to be";
+  } else {
+    const auto& best = ranking.consistent.front();
+    text +=
+        fmt::format("{} at step {:g}, {:.3g} core-seconds per unit time, wrong by at most {:.2g} %",
+                    best.method, best.time_step, best.cost, 100 * best.upper);
+  }
+  if (ranking.consistent.size() > 1) {
+    const auto& next = ranking.consistent[1];
     text += fmt::format("; next {} at step {:g}, {:.2g} times the cost", next.method,
-                        next.time_step, next.cost / best.cost);
+                        next.time_step, next.cost / ranking.consistent.front().cost);
+  }
+  if (const auto& other = ranking.cheaper_inconsistent) {
+    text += fmt::format("; {} at step {:g} passes for {:.3g}, but its limit is not the model",
+                        other->method, other->time_step, other->cost);
   }
   return text + ".";
 }
 
-json answer(const json& cells, const std::string& scene, const std::string& observable,
+json answer(const json& result, const std::string& scene, const std::string& observable,
             double tolerance) {
-  const auto passed = passing(cells, scene, observable, tolerance);
+  const Ranking ranking(passing(result, scene, observable, tolerance));
   json entry = {{"scene", scene},
                 {"observable", observable},
                 {"tolerance", tolerance},
@@ -94,9 +129,13 @@ json answer(const json& cells, const std::string& scene, const std::string& obse
                 {"cost", nullptr},
                 {"upper", nullptr},
                 {"runner_up", nullptr},
-                {"sentence", sentence(scene, observable, tolerance, passed)}};
-  if (!passed.empty()) entry.update(passed.front().to_json());
-  if (passed.size() > 1) entry["runner_up"] = passed[1].to_json();
+                {"cheaper_inconsistent", nullptr},
+                {"sentence", sentence(scene, observable, tolerance, ranking)}};
+  if (!ranking.consistent.empty()) entry.update(ranking.consistent.front().to_json());
+  if (ranking.consistent.size() > 1) entry["runner_up"] = ranking.consistent[1].to_json();
+  if (const auto& other = ranking.cheaper_inconsistent) {
+    entry["cheaper_inconsistent"] = other->to_json();
+  }
   return entry;
 }
 
@@ -182,7 +221,7 @@ void add_answers(json& result) {
         result["orders"].push_back(std::move(order));
       }
       for (const double tolerance : tolerances) {
-        result["answers"].push_back(answer(result["cells"], scene, observable, tolerance));
+        result["answers"].push_back(answer(result, scene, observable, tolerance));
       }
     }
   }

@@ -14,6 +14,8 @@
 #include "experiments/files.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/scene_keys.hpp"
+#include "experiments/text_file.hpp"
 #include "experiments/timing.hpp"
 
 namespace driftless {
@@ -79,6 +81,7 @@ class Campaign {
   void run_one(Cell& cell, unsigned replica, Progress& progress);
   void time_all();
   json scene_records() const;
+  json method_records() const;
 
   const Study& study_;
   const CampaignOptions& options_;
@@ -132,7 +135,7 @@ void Campaign::list_cells() {
                                        (cell_key(prepared->scene(), choice, time_step) + ".json"));
         if (refused) cell->record = refused_cell(*prepared, choice, time_step, *refused);
         if (!refused && fs::exists(cell->file)) {
-          cell->record = json::parse(read_text(cell->file), nullptr, false);
+          cell->record = json::parse(read_text_file(cell->file), nullptr, false);
           if (cell->record.is_discarded()) cell->record = nullptr;
         }
         cells_.push_back(std::move(cell));
@@ -194,7 +197,7 @@ void Campaign::time_all() {
   // One pass over all cells, or none: times of different passes do not compare.
   const auto file = options_.directory / "timing.json";
   json timing;
-  if (fs::exists(file)) timing = json::parse(read_text(file), nullptr, false);
+  if (fs::exists(file)) timing = json::parse(read_text_file(file), nullptr, false);
   if (!timing.is_object() || timing.value("cells", "") != fingerprint(keys)) {
     timing = {{"cells", fingerprint(keys)}, {"costs", json::array()}};
     for (const auto& cost : time_cells(timed)) {
@@ -217,7 +220,7 @@ json Campaign::scene_records() const {
     const bool resolves = resolves_internal_energy(*prepared, study_);
     json record = {{"name", prepared->scene().name},
                    {"preset", prepared->scene().preset},
-                   {"parameters", to_json(prepared->scene())},
+                   {"parameters", scene_parameters(prepared->scene())},
                    {"relaxation_time", std::isfinite(relaxation) ? json(relaxation) : json()},
                    {"resolves_internal_energy", resolves},
                    {"energy_per_particle", prepared->energy_per_particle()}};
@@ -232,6 +235,21 @@ json Campaign::scene_records() const {
   return scenes;
 }
 
+json Campaign::method_records() const {
+  json records = json::array();
+  for (const auto& choice : study_.methods) {
+    const Method& method = *find_method(choice.name);
+    records.push_back({{"name", method.name},
+                       {"title", method.title},
+                       {"reference", method.reference},
+                       {"conserves", method.conserves},
+                       {"consistent", method.consistent},
+                       {"galilean", method.galilean}});
+  }
+  records.erase(std::unique(records.begin(), records.end()), records.end());
+  return records;
+}
+
 json Campaign::run() {
   prepare_directory();
   prepare_scenes();
@@ -243,6 +261,7 @@ json Campaign::run() {
                  {"provenance", provenance(threads_, study_.seed, options_.command)},
                  {"study", to_json(study_)},
                  {"scenes", scene_records()},
+                 {"methods", method_records()},
                  {"cells", json::array()}};
   for (auto& cell : cells_) {
     if (!cell->record["cost"].contains("core_seconds_per_time")) {

@@ -9,7 +9,4 @@ namespace driftless {
 /// beside it, renamed. Throws InputError if the place cannot be written.
 void write_atomically(const std::filesystem::path& path, const std::string& text);
 
-/// The text of a file; throws InputError if it cannot be read.
-std::string read_text(const std::filesystem::path& path);
-
 }  // namespace driftless

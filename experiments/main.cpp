@@ -5,10 +5,11 @@
 #include <iostream>
 
 #include "experiments/campaign.hpp"
-#include "experiments/files.hpp"
+#include "experiments/json_text.hpp"
 #include "experiments/observables.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/report.hpp"
+#include "experiments/text_file.hpp"
 
 namespace {
 
@@ -86,7 +87,7 @@ void run(const Arguments& arguments) {
 void report(const Arguments& arguments) {
   fs::path file = arguments.result;
   if (fs::is_directory(file)) file /= "result.json";
-  const auto result = nlohmann::json::parse(read_text(file), nullptr, false);
+  const auto result = parse_json_text(read_text_file(file.string()), file.string());
   if (!result.is_object() || result.value("format", "") != "driftless-result/1") {
     throw InputError(file.string() + ": is not a result of format driftless-result/1");
   }

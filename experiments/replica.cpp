@@ -7,7 +7,7 @@ namespace driftless {
 StepPlan::StepPlan(const Study& study, double time_step)
     : equilibrate(static_cast<std::uint64_t>(std::llround(study.equilibrate / time_step))),
       samples(static_cast<std::uint64_t>(std::llround(study.measure / study.sample_every))),
-      steps_per_sample(static_cast<std::uint64_t>(std::llround(study.sample_every / time_step))) {}
+      steps_per_sample(driftless::steps_per_sample(study, time_step)) {}
 
 ReplicaResult run_replica(const PreparedScene& prepared, const Study& study,
                           const MethodChoice& choice, double time_step, unsigned replica) {

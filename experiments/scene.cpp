@@ -84,17 +84,9 @@ Scene two_body() {
   return scene;
 }
 
-/// int (1 - r/range)^s r^power dr from 0 to the range: range^(power + 1) times Euler's beta
-/// function of power + 1 and s + 1.
-double weight_moment(double range, double exponent, int power) {
-  double factor = std::pow(range, power + 1) / (exponent + 1);
-  for (int n = 1; n <= power; ++n) factor *= n / (exponent + 1 + n);
-  return factor;
-}
-
-/// [w], the volume integral of the weight.
+/// [w], the volume integral of (1 - r/range)^s: 8 pi range^3/((s + 1)(s + 2)(s + 3)).
 double weight_volume(double range, double exponent) {
-  return 4 * pi * weight_moment(range, exponent, 2);
+  return 8 * pi * std::pow(range, 3) / ((exponent + 1) * (exponent + 2) * (exponent + 3));
 }
 
 /// L_0, whichever form the conduction is quoted in; 0 if nothing conducts.
@@ -131,29 +123,6 @@ double fluid_relaxation_rate(const Scene& scene) {
   return rate;
 }
 
-/// Decay rate of a temperature wave by conduction: kappa = conductivity/(c_v density) times the
-/// wave number squared (Mackie et al. 1999, eq. 3.28; Bonet Avalos and Mackie 1999, eqs. 4.3, 4.4).
-double conduction_wave_rate(const Scene& scene, double wave_number) {
-  const auto& f = scene.fluid;
-  const double conductivity = 2 * pi / 3 * scene.density * scene.density *
-                              inverse_temperature_conduction(f) / (f.temperature * f.temperature) *
-                              weight_moment(f.heat_range, f.weight_exponent, 4);
-  const double capacity = f.heat_capacity + 2.5 * f.boltzmann;
-  return conductivity / (capacity * scene.density) * wave_number * wave_number;
-}
-
-/// The same by particles that carry their energy along: D = k T/(m w_0) with the collision rate w_0
-/// (Groot and Warren 1997); without friction they fly freely.
-double diffusion_wave_rate(const Scene& scene, double wave_number) {
-  const auto& f = scene.fluid;
-  if (scene.frozen) return 0;
-  const double thermal_square = f.boltzmann * f.temperature / f.mass;
-  if (!f.has_friction()) return std::sqrt(thermal_square) * wave_number;
-  const double collision_rate = scene.density * f.friction *
-                                weight_volume(f.friction_range, f.weight_exponent) / (3 * f.mass);
-  return thermal_square / collision_rate * wave_number * wave_number;
-}
-
 }  // namespace
 
 const std::vector<Preset>& presets() {
@@ -184,15 +153,6 @@ double relaxation_time(const Scene& scene) {
   const double rate =
       scene.layout == Layout::pairs ? pair_relaxation_rate(scene) : fluid_relaxation_rate(scene);
   return rate > 0 ? 1 / rate : std::numeric_limits<double>::infinity();
-}
-
-double wave_time(const Scene& scene) {
-  if (scene.layout == Layout::pairs) return 0;
-  const double length = std::cbrt(static_cast<double>(scene.particles) / scene.density);
-  const double wave_number = 2 * pi / length;
-  const double rate =
-      conduction_wave_rate(scene, wave_number) + diffusion_wave_rate(scene, wave_number);
-  return rate > 0 ? 1 / rate : 0;
 }
 
 }  // namespace driftless

@@ -47,9 +47,4 @@ const std::vector<Preset>& presets();
 /// the rates at the pair's distance). Infinite if nothing acts.
 double relaxation_time(const Scene& scene);
 
-/// Predicted decay time of the slowest temperature wave of the box, 1/((kappa + D) k^2) with the
-/// published conductivity and diffusion of the ideal fluid; 0 for `pairs` and frozen systems
-/// without conduction.
-double wave_time(const Scene& scene);
-
 }  // namespace driftless

@@ -9,6 +9,7 @@
 #include "experiments/answers.hpp"
 #include "experiments/files.hpp"
 #include "experiments/report.hpp"
+#include "experiments/text_file.hpp"
 #include "tests/json_schema.hpp"
 
 namespace driftless {
@@ -93,7 +94,7 @@ TEST(Campaign, TakesFinishedCellsUpAndRunsTheOthers) {
   // One cell is lost, one is torn, as a dying disk would leave it; a third one is marked.
   fs::remove(files[0]);
   std::ofstream(files[1]) << "{\"scene\": ";
-  auto marked = json::parse(read_text(files[2]));
+  auto marked = json::parse(read_text_file(files[2]));
   marked["energy_trace"]["mark"] = 1;
   write_atomically(files[2], marked.dump());
   auto resumed = run(small_study(), folder.path());

@@ -121,28 +121,6 @@ TEST(RelaxationTime, is_infinite_where_nothing_acts) {
   EXPECT_EQ(relaxation_time(scene), std::numeric_limits<double>::infinity());
 }
 
-TEST(WaveTime, has_the_published_conductivity_and_diffusion) {
-  const double wave_number = 2 * std::numbers::pi / 10, square = wave_number * wave_number;
-  const Scene still = read({{"preset", "mackie-1999"}, {"frozen", true}});
-  // 2 pi density^2 L_0 r^5/(315 T^2) over (phi + 5k/2) density.
-  const double diffusivity =
-      2 * std::numbers::pi * 850 * std::pow(1.24, 5) / (315 * 1.21) / (50 + 1.25);
-  EXPECT_NEAR(wave_time(still), 1 / (diffusivity * square), 1e-9);
-  // k T/(m w_0), w_0 = density zeta_0 [w]/(3 m).
-  const double diffusion = 0.55 / (2 * std::numbers::pi * std::pow(1.24, 3) / 45);
-  const Scene moving = read({{"preset", "mackie-1999"}});
-  EXPECT_NEAR(wave_time(moving), 1 / ((diffusivity + diffusion) * square), 1e-9);
-}
-
-TEST(WaveTime, is_finite_whatever_acts) {
-  EXPECT_EQ(wave_time(read({{"preset", "two-body"}})), 0);
-  EXPECT_EQ(wave_time(read({{"preset", "mackie-1999"}, {"frozen", true}, {"heat_form", "none"}})),
-            0);
-  const double free_flight =
-      wave_time(read({{"preset", "mackie-1999"}, {"friction", 0}, {"heat_form", "none"}}));
-  EXPECT_NEAR(free_flight, 10 / (2 * std::numbers::pi * std::sqrt(0.55)), 1e-9);
-}
-
 TEST(Overrides, of_boltzmann_keep_the_heat_capacity_in_its_units) {
   const Scene scene = read({{"preset", "mackie-1999"}, {"boltzmann", 0.25}});
   EXPECT_EQ(scene.fluid.heat_capacity, 25);

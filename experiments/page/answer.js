@@ -7,10 +7,9 @@ export function parts_of(observable) {
   return observable === 'equilibrium' ? equilibrium_parts : [observable];
 }
 
+// The name of a method together with its options, as the result's answers and orders have it.
 export function method_label(cell) {
-  const options = Object.entries(cell.options ?? {}).filter(([, value]) => value !== false && value !== null);
-  const words = options.map(([key, value]) => (value === true ? key : `${key}=${value}`));
-  return words.length ? `${cell.method} (${words.join(', ')})` : cell.method;
+  return [cell.method, ...Object.entries(cell.options ?? {}).map(([name, value]) => `${name} ${value}`)].join(', ');
 }
 
 // What a cell says of an observable: {state, value, lower, upper, worst, note}. The states are

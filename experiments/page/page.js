@@ -4,7 +4,7 @@ import {all_drawn, draw} from './chart.js';
 import {difference, distribution} from './charts/distribution.js';
 import {energy_drift, methods_at_rounding, rounding} from './charts/energy_drift.js';
 import {energy_trace} from './charts/energy_trace.js';
-import {error_against_cost} from './charts/error_against_cost.js';
+import {error_against_cost, failures_without_cost} from './charts/error_against_cost.js';
 import {error_against_step} from './charts/error_against_step.js';
 import {method_step_map} from './charts/method_step_map.js';
 import {fill_select, replace} from './dom.js';
@@ -74,7 +74,14 @@ function draw_errors(now) {
   draw('chart-cost', error_against_cost(now), `Error against cost on logarithmic axes, one line for each method: ${what}`);
   draw('chart-step', error_against_step(now), `Error against time step on logarithmic axes, one line for each method: ${what}`);
   draw('chart-map', method_step_map({...now, cells: scene_cells(result, now.scene)}), `Map of the error by method and time step: ${what}`);
+  const without = failures_without_cost(now).map((row) => `${row.method} at step ${row.step_text} (${row.status_text})`);
+  replace('cost-note', without.length ? `Failed before a cost could be taken, so not drawn: ${without.join('; ')}.` : '');
   replace('map-note', parts_of(now.observable).length > 1 ? 'Each square shows the worst of kinetic temperature, internal temperature and variance of internal energy. ' : '');
+}
+
+function unit_of(now, observable) {
+  const unit = scene_cells(result, now.scene).map((cell) => cell.observables?.[observable]?.unit).find(Boolean);
+  return unit ? `, ${unit.replaceAll('^2', '²')}` : '';
 }
 
 function draw_drift(now) {
@@ -82,7 +89,7 @@ function draw_drift(now) {
   const kept_text = `Every method measured keeps the energy to rounding (below ${number(rounding)} kT per particle).`;
   const empty = (what) => (at_rounding.length ? kept_text : `No ${what} was measured in this scene.`);
   const drift = energy_drift(now, 'energy_drift', '|drift|, kT per particle and unit time');
-  const walk = energy_drift(now, 'energy_walk', 'random walk of the energy per particle');
+  const walk = energy_drift(now, 'energy_walk', `random walk${unit_of(now, 'energy_walk')}`);
   draw('chart-drift', drift, drift ? `Energy drift against time step on logarithmic axes: ${now.scene}` : empty('energy drift'));
   draw('chart-walk', walk, walk ? `Random walk of the energy against time step on logarithmic axes: ${now.scene}` : empty('random walk of the energy'));
   replace('drift-note', at_rounding.length ? `Not drawn, for their energy is kept to rounding at every step: ${at_rounding.join(', ')}.` : '');

@@ -2,8 +2,6 @@
 import {cost_of, judge, method_label} from './answer.js';
 import {deviation, number, observable_short, status_title, with_error} from './format.js';
 
-export const states = {resolved: 'error resolved', below_noise: 'below noise: the 95 % interval reaches 0'};
-
 export function scene_cells(result, scene) {
   return result.cells.filter((cell) => cell.scene === scene);
 }
@@ -24,14 +22,14 @@ function shared_fields(cell, unit) {
   };
 }
 
-// Deviations of an observable, with a state and texts for tooltips.
+// Deviations of an observable, with texts for tooltips.
 export function error_rows(cells, observable, unit) {
   return cells.map((cell) => ({cell, judgement: judge(cell, observable)}))
     .filter(({judgement}) => judgement.upper > 0)
     .map(({cell, judgement}) => ({
       ...shared_fields(cell, unit),
       value: judgement.value, lower: judgement.lower, upper: judgement.upper,
-      below_noise: judgement.state === 'below_noise', state: states[judgement.state],
+      below_noise: judgement.state === 'below_noise',
       error_text: deviation(judgement.value, observable),
       interval_text: `${deviation(judgement.lower, observable)} … ${deviation(judgement.upper, observable)}`,
       worst_text: observable_short(judgement.worst),
@@ -49,7 +47,7 @@ export function size_rows(cells, observable, unit) {
       const below_noise = value - half <= 0;
       return {
         ...shared_fields(cell, unit), value, lower: Math.max(0, value - half), upper: value + half, below_noise,
-        state: below_noise ? states.below_noise : states.resolved, error_text: number(value, 2),
+        error_text: number(value, 2),
         interval_text: `${number(Math.max(0, value - half), 2)} … ${number(value + half, 2)}`,
         worst_text: observable_short(observable), mean_text: with_error(mean, error),
       };
@@ -58,9 +56,8 @@ export function size_rows(cells, observable, unit) {
 
 export function failure_rows(cells, unit) {
   const failed = cells.filter((cell) => cell.status !== 'ok' && cell.status !== 'not_applicable');
-  const rows_of = [...new Set(failed.map(method_label))];
   return failed.map((cell) => ({
-    ...shared_fields(cell, unit), row: rows_of.indexOf(method_label(cell)), status_text: status_title(cell.status),
+    ...shared_fields(cell, unit), status_text: status_title(cell.status),
     short_text: {negative_internal_energy: 'u < 0'}[cell.status] ?? status_title(cell.status),
     failed_text: `${cell.failed_replicas} of ${cell.replicas} replicas`, cause_text: cell.failures?.[0]?.cause ?? '',
   }));

@@ -31,7 +31,7 @@ export function distribution({curve, title}) {
   const y = {field: 'density', type: 'quantitative', title: 'density', axis: axis_y};
   const kind = (name) => ({datum: name, type: 'nominal', scale: {domain: ['measured, 95 % interval', 'exact law'], range: [measured, law]}, legend: {title: null, orient: 'top', symbolType: 'stroke', symbolStrokeWidth: 3}});
   const exact = rows.some((row) => row.exact !== null)
-    ? [{name: 'exact', mark: {type: 'line', strokeWidth: 1.6, interpolate: 'monotone', tooltip: null}, encoding: {x, y: {...y, field: 'exact'}, stroke: kind('exact law')}}] : [];
+    ? [{name: 'exact', mark: {type: 'line', strokeWidth: 1.6, interpolate: 'cardinal', tooltip: null}, encoding: {x, y: {...y, field: 'exact'}, stroke: kind('exact law')}}] : [];
   return panel(rows, 240, [
     ...exact,
     {name: 'intervals', mark: {type: 'rule', strokeWidth: 1.6}, encoding: {x, y: {...y, field: 'low'}, y2: {field: 'high'}, stroke: kind('measured, 95 % interval')}},

@@ -17,8 +17,8 @@ export function energy_drift(context, observable, title) {
   const rows = drift_rows(context, observable).filter((row) => row.upper > rounding);
   if (!rows.length) return null;
   return error_chart({
-    rows, failures: [], labels: context.labels, method_legend: false,
-    x: step_axis(cells), y: {title, scale: 1, size_title: 'size'},
+    rows, failures: [], labels: context.labels, legend: {methods: true, orient: 'bottom', columns: 2},
+    x: step_axis(cells), y: {title, scale: 1, size_title: 'size'}, height: 300,
   });
 }
 

@@ -14,14 +14,14 @@ export function energy_trace({cells, time_step, labels}) {
   const shown = [...new Set(rows.map((row) => row.method))];
   const base_of = new Map(rows.map((row) => [row.method, row.base]));
   const range = shown.map((label) => colour.range[labels.indexOf(base_of.get(label))]);
-  const x = {field: 'time', type: 'quantitative', title: 'time', scale: {nice: false}};
+  const x = {field: 'time', type: 'quantitative', title: 'time', scale: {nice: false}, axis: {tickCount: 8}};
   const y = {field: 'energy', type: 'quantitative', title: '[E(t) − E(0)] / (N kT)', axis: {format: '~g'}};
   return {
     width: 'container', height: 300, autosize: {type: 'fit-x', contains: 'padding'}, data: {values: rows},
     layer: [
       {name: 'zero', data: {values: [{energy: 0}]}, mark: {type: 'rule', stroke: '#9aa5b1', tooltip: null}, encoding: {y}},
       {name: 'traces', params: [{name: 'picked', select: {type: 'point', fields: ['method']}, bind: 'legend'}], mark: {type: 'line', strokeWidth: 1.8},
-        encoding: {x, y, stroke: {field: 'method', type: 'nominal', scale: {domain: shown, range}, legend: {title: 'method (click to single out)', orient: 'right'}},
+        encoding: {x, y, stroke: {field: 'method', type: 'nominal', scale: {domain: shown, range}, legend: {title: 'method', orient: 'right', symbolOpacity: 1, symbolStrokeWidth: 3}},
           opacity: {condition: {param: 'picked', value: 1}, value: 0.12},
           tooltip: [{field: 'method', title: 'method'}, {field: 'time', title: 'time'}, {field: 'energy_text', title: 'energy'}]}},
     ],

@@ -1,15 +1,18 @@
 import {error_rows, failure_rows, scene_cells} from '../rows.js';
-import {error_chart} from './error_chart.js';
 import {error_axis, tolerance_line} from './error_axis.js';
+import {error_chart} from './error_chart.js';
 
 export function error_against_cost({result, scene, observable, tolerance, unit, labels, winner}) {
   const cells = scene_cells(result, scene);
-  const rows = error_rows(cells, observable, unit);
-  const best = winner?.best.cell;
   return error_chart({
-    rows, failures: failure_rows(cells, unit), labels,
-    x: {field: 'cost', title: `cost, ${unit.name} per unit of simulated time`}, y: error_axis(observable),
-    tolerance: tolerance_line(observable, tolerance),
-    answer: best ? rows.find((row) => row.method === winner.label && row.time_step === best.time_step) : null,
+    rows: error_rows(cells, observable, unit), failures: failure_rows(cells, unit), labels,
+    x: {field: 'cost', title: `cost, ${unit.name} per unit of simulated time`, label_side: 'right'}, y: error_axis(observable),
+    tolerance: tolerance_line(observable, tolerance), legend: {methods: true, orient: 'right', title: 'method'},
+    is_answer: winner ? (row) => row.method === winner.label && row.time_step === winner.best.cell.time_step : null,
   });
+}
+
+// Failed cells that no cost is known of have no place on the chart.
+export function failures_without_cost({result, scene, unit}) {
+  return failure_rows(scene_cells(result, scene), unit).filter((row) => !(row.cost > 0));
 }

@@ -7,7 +7,8 @@ const units = {
 };
 
 export function error_axis(observable) {
-  return {title: units[observable] ?? `error of ${observable_short(observable)}, %`, scale: is_relative(observable) ? 100 : 1};
+  const title = observable === 'equilibrium' ? 'largest of the three equilibrium errors, %' : `error of ${observable_short(observable)}, %`;
+  return {title: units[observable] ?? title, scale: is_relative(observable) ? 100 : 1, size_title: 'error'};
 }
 
 export function tolerance_line(observable, tolerance) {

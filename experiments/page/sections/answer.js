@@ -1,7 +1,7 @@
 // The answer in a sentence, and the table of every method's cheapest step that passes.
 import {answer, methods_of} from '../answer.js';
 import {element, replace, table} from '../dom.js';
-import {deviation, number, observable_short, status_title, with_error} from '../format.js';
+import {deviation, number, observable_short, percent, status_title, with_error} from '../format.js';
 import {method_tag} from '../palette.js';
 
 function published(result, scene, observable, tolerance) {
@@ -9,17 +9,16 @@ function published(result, scene, observable, tolerance) {
     Math.abs(entry.tolerance - tolerance) <= 1e-9 * tolerance)?.sentence;
 }
 
-function composed(context, scene) {
-  const {result, observable, tolerance, unit} = context;
+// For tolerances that the result has no sentence for: the same words.
+function composed({result, observable, tolerance}, scene) {
   const {winner, runner_up} = answer(result, scene, observable, tolerance);
-  const within = deviation(tolerance, observable);
-  const what = observable_short(observable);
-  if (!winner) return `${scene}: no method is shown to keep ${what} within ${within} at any step tried.`;
+  const what = observable === 'equilibrium' ? 'temperatures and the variance of the internal energy' : `the ${observable.replaceAll('_', ' ')}`;
+  const aim = `For ${scene}, to have ${what} within ${percent(tolerance)}`;
+  if (!winner) return `${aim}: no method and step of this study is shown to be.`;
   const {cell, judgement, cost} = winner.best;
-  const first = `${scene}: ${winner.label} at step ${number(cell.time_step)} keeps ${what} within ${within} ` +
-    `(at worst ${deviation(judgement.upper, observable)}) for ${number(cost * unit.factor)} ${unit.name} per unit time`;
-  if (!runner_up) return `${first}; no other method does.`;
-  return `${first}; next is ${runner_up.label} at step ${number(runner_up.best.cell.time_step)}, at ${number(runner_up.best.cost / cost, 2)} times the cost.`;
+  const first = `${aim}: ${winner.label} at step ${number(cell.time_step)}, ${number(cost)} core-seconds per unit time, wrong by at most ${percent(judgement.upper)}`;
+  if (!runner_up) return `${first}.`;
+  return `${first}; next ${runner_up.label} at step ${number(runner_up.best.cell.time_step)}, ${number(runner_up.best.cost / cost, 2)} times the cost.`;
 }
 
 function sentence(context, scene) {
@@ -38,10 +37,16 @@ function reason(entry, observable, tolerance) {
   if (!numbers.length) return without_numbers(entry, with_state);
   if (numbers.some(({judgement}) => judgement.upper <= tolerance)) return 'passes, but its cost is not known';
   const {cell, judgement} = numbers[0];
-  const at = `${deviation(judgement.upper, observable)} at step ${number(cell.time_step)}`;
+  const at = `${told_apart(judgement.upper, tolerance, observable)} at step ${number(cell.time_step)}`;
   if (judgement.state === 'below_noise') return `below noise, but not resolved to ${deviation(tolerance, observable)}: could be up to ${at}`;
   if (judgement.lower > tolerance) return `too wrong at every step: at best ${deviation(judgement.value, observable)}, at step ${number(cell.time_step)}`;
   return `undecided: ${deviation(judgement.value, observable)} measured, could be up to ${at}`;
+}
+
+// With as many digits as show that the value is not the tolerance.
+function told_apart(value, tolerance, observable) {
+  const texts = [2, 3, 4, 5].map((digits) => deviation(value, observable, digits));
+  return texts.find((text) => text !== deviation(tolerance, observable, 5)) ?? texts[3];
 }
 
 function without_numbers(entry, with_state) {

@@ -1,8 +1,9 @@
 // The fitted order of each method, beside the chart of error against step; its marks are the legend.
-import {parts_of} from '../answer.js';
+import {method_label, parts_of} from '../answer.js';
 import {replace, table} from '../dom.js';
 import {observable_short} from '../format.js';
 import {method_tag} from '../palette.js';
+import {scene_cells} from '../rows.js';
 
 const short_heads = {kinetic_temperature: 'kinetic T', internal_temperature: 'internal T', internal_energy_variance: 'Var u'};
 
@@ -17,6 +18,7 @@ export function render_orders({result, scene, observable, labels}) {
   const orders = (result.orders ?? []).filter((entry) => entry.scene === scene);
   const parts = parts_of(observable);
   const heads = parts.map((part) => (parts.length > 1 ? short_heads[part] ?? observable_short(part) : 'order'));
-  const rows = labels.map((label) => [method_tag(label, labels), ...parts.map((part) => order_text(orders, label, part))]);
+  const applicable = new Set(scene_cells(result, scene).filter((cell) => cell.status !== 'not_applicable').map(method_label));
+  const rows = labels.filter((label) => applicable.has(label)).map((label) => [method_tag(label, labels), ...parts.map((part) => order_text(orders, label, part))]);
   replace('order-table-place', table('order-table', 'fitted order: the slope of error against step, ± one standard error', ['method', ...heads], rows));
 }

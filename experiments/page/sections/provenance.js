@@ -11,9 +11,18 @@ function value_text(value) {
 
 const words = (key) => key.replaceAll('_', ' ');
 
+// Keys a reader looks for first; the file has them by the alphabet.
+const first_keys = ['particles', 'density', 'temperature', 'boltzmann', 'mass', 'heat_capacity', 'friction', 'friction_closure', 'friction_range',
+  'conduction', 'heat_form', 'heat_range', 'repulsion', 'repulsion_range', 'weight_exponent'];
+
+function parameter_keys(scenes) {
+  const keys = [...new Set(scenes.flatMap((scene) => Object.keys(scene.parameters ?? {})))].filter((key) => key !== 'name' && key !== 'preset');
+  return [...first_keys.filter((key) => keys.includes(key)), ...keys.filter((key) => !first_keys.includes(key))];
+}
+
 export function render_scenes({result}) {
   const {scenes} = result;
-  const keys = [...new Set(scenes.flatMap((scene) => Object.keys(scene.parameters ?? {})))];
+  const keys = parameter_keys(scenes);
   const derived = ['relaxation_time', 'energy_per_particle', 'resolves_internal_energy'];
   const differs = (key) => new Set(scenes.map((scene) => JSON.stringify(scene.parameters?.[key]))).size > 1;
   const rows = [
@@ -26,13 +35,13 @@ export function render_scenes({result}) {
 }
 
 export function render_provenance({result}) {
-  const {command, commit, dirty, ...rest} = result.provenance ?? {};
+  const {command, version, commit, dirty, compiler, flags, cpu, threads, seed, date} = result.provenance ?? {};
   const {duration, replicas, time_steps: steps} = result.study ?? {};
   const rows = [
-    ...Object.entries(rest).map(([key, value]) => [words(key), value_text(value)]),
-    ['commit', `${commit ?? '–'}${dirty ? ', with uncommitted changes' : ''}`],
+    ['version', value_text(version)], ['commit', `${commit || '–'}${dirty ? ', with uncommitted changes' : ''}`],
+    ...Object.entries({compiler, flags, cpu, threads, seed, date}).map(([key, value]) => [key, typeof value === 'number' ? String(value) : value_text(value)]),
     ['time steps', value_text(steps)], ['replicas', value_text(replicas)],
-    ...Object.entries(duration ?? {}).map(([key, value]) => [`duration: ${words(key)}`, value_text(value)]),
+    ...['equilibrate', 'measure', 'sample_every'].map((key) => [words(key), value_text(duration?.[key])]),
   ];
   replace('provenance-place', table('provenance-table', 'Provenance', ['', ''], rows));
   replace('command', command ?? '–');

@@ -33,5 +33,5 @@ export function render_failures({result, scene, labels}) {
   const rows = failures.map(({cell, failure}) => [method_tag(method_label(cell), labels), numeric(number(cell.time_step)), status_title(cell.status),
     numeric(String(failure.replica)), failure.cause, numeric(String(failure.step)), numeric(number(failure.time, 4))]);
   const caption = `Failed replicas of this scene: ${failures.length}`;
-  replace('failures-place', table('failures-table', caption, ['method', 'time step', 'status', 'replica', 'cause', 'step number', 'time'], rows));
+  replace('failures-place', table('failures-table', caption, ['method', numeric('time step'), 'status', numeric('replica'), 'cause', numeric('step number'), numeric('time')], rows));
 }
