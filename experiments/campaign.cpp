@@ -48,12 +48,15 @@ void parallel(std::size_t count, unsigned threads, Work&& work) {
 }
 
 struct Cell {
+  Cell(const PreparedScene& scene, const MethodChoice& method, double step, fs::path kept)
+      : prepared(&scene), choice(&method), time_step(step), file(std::move(kept)) {}
+
   const PreparedScene* prepared;
   const MethodChoice* choice;
   double time_step;
   fs::path file;  ///< where it is kept once finished
   json record;    ///< null until finished
-  std::vector<ReplicaResult> replicas = {};
+  std::vector<ReplicaResult> replicas;
   std::atomic<unsigned> remaining = 0;
 
   std::string name() const {
@@ -129,10 +132,9 @@ void Campaign::list_cells() {
     for (const auto& choice : study_.methods) {
       const auto refused = refusal(*find_method(choice.name), prepared->fluid());
       for (const double time_step : study_.time_steps) {
-        auto cell =
-            std::make_unique<Cell>(prepared.get(), &choice, time_step,
-                                   options_.directory / "cells" /
-                                       (cell_key(prepared->scene(), choice, time_step) + ".json"));
+        const auto file = cell_key(prepared->scene(), choice, time_step) + ".json";
+        auto cell = std::make_unique<Cell>(*prepared, choice, time_step,
+                                           options_.directory / "cells" / file);
         if (refused) cell->record = refused_cell(*prepared, choice, time_step, *refused);
         if (!refused && fs::exists(cell->file)) {
           cell->record = json::parse(read_text_file(cell->file), nullptr, false);

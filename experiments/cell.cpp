@@ -29,6 +29,7 @@ json curve_json(const Histogram& histogram) {
 std::string status_of(FailureCause cause) {
   switch (cause) {
     case FailureCause::non_finite:
+    case FailureCause::energy_runaway:
       return "unstable";
     case FailureCause::negative_internal_energy:
       return "negative_internal_energy";

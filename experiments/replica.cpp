@@ -22,11 +22,20 @@ ReplicaResult run_replica(const PreparedScene& prepared, const Study& study,
       integrator->step(system, time_step);
     }
   };
+  // An isolated system that has doubled its energy is broken, whether or not a number is.
+  const double energy = system.total_energy();
+  const auto check_energy = [&] {
+    if (std::abs(system.total_energy() - energy) > std::abs(energy)) {
+      throw StepFailure(FailureCause::energy_runaway, {});
+    }
+  };
   try {
     advance(plan.equilibrate);
+    check_energy();
     Sampler sampler(prepared, system, replica, plan.samples);
     for (std::uint64_t sample = 0; sample < plan.samples; ++sample) {
       advance(plan.steps_per_sample);
+      check_energy();
       sampler.take(system, static_cast<double>(sample + 1) * study.sample_every);
     }
     result.record = std::move(sampler).finish();

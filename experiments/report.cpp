@@ -41,6 +41,7 @@ std::string step_text(const json& step) { return fmt::format("{:g}", step.get<do
 
 std::string answers_of(const json& result, const std::string& scene) {
   std::vector<Row> rows;
+  std::string beside;  // cheaper methods of another limit
   for (const auto& answer : result["answers"]) {
     if (answer["scene"] != scene || answer["observable"] != equilibrium_observable) continue;
     Row row = {fmt::format("{:g} %", 100 * answer["tolerance"].get<double>())};
@@ -57,10 +58,17 @@ std::string answers_of(const json& result, const std::string& scene) {
                                         step_text(next["time_step"]), next["cost"].get<double>())});
     }
     rows.push_back(row);
+    if (const auto& other = answer["cheaper_inconsistent"]; !other.is_null()) {
+      beside += fmt::format(
+          "\nWithin {:g} %, {} at step {} passes for {:.3g}, but its limit is not the model.\n",
+          100 * answer["tolerance"].get<double>(), other["method"].get<std::string>(),
+          step_text(other["time_step"]), other["cost"].get<double>());
+    }
   }
   if (rows.empty()) return "";
   return table({"tolerance", "method", "step", "wrong by at most", "core-s per time", "runner-up"},
-               rows);
+               rows) +
+         beside;
 }
 
 /// What a map of methods and steps says of a cell.

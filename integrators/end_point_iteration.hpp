@@ -1,7 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "integrators/flows.hpp"
 
@@ -35,13 +35,14 @@ class EndPointIteration {
             return energy(start, end, momentum(start, end));
           },
           exchange_);
-      if (set_energies(system) <= tolerance) {
+      set_energies(system, tolerance);
+      if (moving_.empty()) {
         system.move(dt);
         system.set_motion(trial_);
         return;
       }
     }
-    throw StepFailure(FailureCause::not_converged, {});
+    throw StepFailure(FailureCause::not_converged, moving_);
   }
 
  private:
@@ -52,26 +53,27 @@ class EndPointIteration {
     }
   }
 
-  /// Returns the largest change as a share of the mean energy.
-  double set_energies(System& system) {
+  /// Takes the new energies and notes whose still moved.
+  void set_energies(const System& system, double tolerance) {
     const auto& start = system.motion();
-    double largest = 0, sum = 0;
+    const auto& id = system.state().id;
+    const double limit = tolerance * system.internal_energy() / static_cast<double>(system.size());
     std::vector<std::uint32_t> negative;
+    moving_.clear();
     for (std::size_t i = 0; i < system.size(); ++i) {
       const double next = start.internal_energy[i] + exchange_.energy[i];
-      if (!std::isfinite(next)) throw StepFailure(FailureCause::non_finite, {system.state().id[i]});
-      if (next <= 0) negative.push_back(system.state().id[i]);
-      largest = std::max(largest, std::abs(next - trial_.internal_energy[i]));
-      sum += start.internal_energy[i];
+      if (!std::isfinite(next)) throw StepFailure(FailureCause::non_finite, {id[i]});
+      if (next <= 0) negative.push_back(id[i]);
+      if (std::abs(next - trial_.internal_energy[i]) > limit) moving_.push_back(id[i]);
       trial_.internal_energy[i] = next;
     }
     // No coefficient exists at a negative energy: the iteration cannot go on from here.
     if (!negative.empty()) throw StepFailure(FailureCause::negative_internal_energy, negative);
-    return largest * static_cast<double>(system.size()) / sum;
   }
 
   Motion trial_;
   Exchange exchange_;
+  std::vector<std::uint32_t> moving_;  ///< ids that have not converged
 };
 
 /// Gamma at the end of the step and everything else at its start [Bonet Avalos, Mackie, J. Chem.

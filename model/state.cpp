@@ -36,6 +36,8 @@ std::string to_string(FailureCause cause) {
       return "negative internal energy";
     case FailureCause::not_converged:
       return "solver did not converge";
+    case FailureCause::energy_runaway:
+      return "energy ran away";
   }
   throw std::logic_error("unknown failure cause");
 }

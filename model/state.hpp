@@ -48,9 +48,9 @@ struct Exchange {
 };
 
 /// Why a step could not be completed.
-enum class FailureCause { non_finite, negative_internal_energy, not_converged };
+enum class FailureCause { non_finite, negative_internal_energy, not_converged, energy_runaway };
 
-/// "non-finite number", "negative internal energy", "solver did not converge".
+/// "non-finite number", "negative internal energy", "solver did not converge", "energy ran away".
 std::string to_string(FailureCause cause);
 
 /// Thrown from inside a step, with the ids of the particles concerned (empty if all are). The state

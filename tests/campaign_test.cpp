@@ -148,6 +148,19 @@ TEST(Campaign, AFailureStopsTheCellWithCauseStepAndTime) {
   EXPECT_FALSE(cell["conditioned_on_survival"]);
 }
 
+TEST(Campaign, AnEnergyThatDoublesIsAFailureThoughEveryNumberIsFinite) {
+  // The Euler move in a soft fluid heats it by some 20 kT a particle and unit time at this step.
+  Folder folder("runaway");
+  const auto result = run(small_study(R"({"scene": {"preset": "soft-fluid", "particles": 81},
+                      "methods": ["avalos-mackie-midpoint", "shardlow-s1"], "time_steps": [0.04],
+                      "duration": {"equilibrate": 4, "measure": 8, "sample_every": 0.4}})"),
+                          folder.path());
+  const auto& cell = cell_of(result, "avalos-mackie-midpoint", 0.04);
+  EXPECT_EQ(cell["status"], "unstable");
+  EXPECT_EQ(cell["failures"][0]["cause"], "energy ran away");
+  EXPECT_EQ(cell_of(result, "shardlow-s1", 0.04)["status"], "ok");
+}
+
 TEST(Campaign, ObservablesOfTheInternalEnergyNeedTimeToBeResolved) {
   // Without conduction u relaxes in about 250 time units: a run of 5 knows nothing of it.
   Folder folder("unresolved");

@@ -1,7 +1,11 @@
 // The rule of an answer: which method and step keeps an observable within a tolerance at least cost.
 // No document and no chart here, so that it runs under node as well as in the page.
 
-export const equilibrium_parts = ['kinetic_temperature', 'internal_temperature', 'internal_energy_variance'];
+export const equilibrium_parts = [
+  'kinetic_temperature',
+  'internal_temperature',
+  'internal_energy_variance',
+];
 
 export function parts_of(observable) {
   return observable === 'equilibrium' ? equilibrium_parts : [observable];
@@ -9,7 +13,10 @@ export function parts_of(observable) {
 
 // The name of a method together with its options, as the result's answers and orders have it.
 export function method_label(cell) {
-  return [cell.method, ...Object.entries(cell.options ?? {}).map(([name, value]) => `${name} ${value}`)].join(', ');
+  return [
+    cell.method,
+    ...Object.entries(cell.options ?? {}).map(([name, value]) => `${name} ${value}`),
+  ].join(', ');
 }
 
 // What a cell says of an observable: {state, value, lower, upper, worst, note}. The states are
@@ -21,14 +28,17 @@ export function judge(cell, observable) {
   if (cell.status !== 'ok') return {state: 'failed', note: cell.status};
   const parts = parts_of(observable).map((name) => ({name, ...cell.observables?.[name]}));
   const unresolved = parts.find((part) => part.status === 'not_resolved');
-  if (unresolved) return {state: 'not_resolved', note: unresolved.note ?? '', worst: unresolved.name};
+  if (unresolved)
+    return {state: 'not_resolved', note: unresolved.note ?? '', worst: unresolved.name};
   const without = parts.find((part) => !part.deviation);
   if (without) return {state: 'no_exact_value', note: without.note ?? '', worst: without.name};
   const largest = (end) => Math.max(...parts.map((part) => part.deviation[end]));
   const upper = largest('upper');
   return {
     state: parts.every((part) => part.deviation.below_noise) ? 'below_noise' : 'resolved',
-    value: largest('value'), lower: largest('lower'), upper,
+    value: largest('value'),
+    lower: largest('lower'),
+    upper,
     worst: parts.find((part) => part.deviation.upper === upper).name,
   };
 }

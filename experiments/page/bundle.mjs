@@ -8,18 +8,30 @@ import {fileURLToPath} from 'node:url';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const result_mark = '@RESULT@';
-const longest_literal = 16000;  // well under the 65536 characters that a C++ compiler must take
+const longest_literal = 16000; // well under the 65536 characters that a C++ compiler must take
 
 async function bundled_script() {
   const {outputFiles, metafile} = await build({
-    entryPoints: [join(here, 'page.js')], absWorkingDir: join(here, '../..'), bundle: true, minify: true, write: false,
-    metafile: true, format: 'iife', platform: 'browser', target: 'es2020', charset: 'ascii', legalComments: 'none', logLevel: 'warning',
+    entryPoints: [join(here, 'page.js')],
+    absWorkingDir: join(here, '../..'),
+    bundle: true,
+    minify: true,
+    write: false,
+    metafile: true,
+    format: 'iife',
+    platform: 'browser',
+    target: 'es2020',
+    charset: 'ascii',
+    legalComments: 'none',
+    logLevel: 'warning',
   });
   return {script: outputFiles[0].text, packages: packages_of(Object.keys(metafile.inputs))};
 }
 
 function packages_of(inputs) {
-  const names = inputs.map((path) => path.match(/.*node_modules\/((?:@[^/]+\/)?[^/]+)\//)?.[0]).filter(Boolean);
+  const names = inputs
+    .map((path) => path.match(/.*node_modules\/((?:@[^/]+\/)?[^/]+)\//)?.[0])
+    .filter(Boolean);
   return [...new Set(names)].sort();
 }
 
@@ -31,23 +43,34 @@ function licences(packages) {
     const {name, version} = JSON.parse(readFileSync(join(folder, 'package.json'), 'utf8'));
     const file = readdirSync(folder).find((entry) => /^licen[cs]e/i.test(entry));
     if (!file) throw new Error(`${name} ${version} has no licence file`);
-    const text = readFileSync(join(folder, file), 'utf8').replaceAll('*/', '* /').replaceAll('\r', '').trim();
+    const text = readFileSync(join(folder, file), 'utf8')
+      .replaceAll('*/', '* /')
+      .replaceAll('\r', '')
+      .trim();
     holders.set(text, [...(holders.get(text) ?? []), `${name} ${version}`]);
   }
-  return [...holders].map(([text, names]) => `${names.join(', ')}:\n\n${text}`).join('\n\n----\n\n');
+  return [...holders]
+    .map(([text, names]) => `${names.join(', ')}:\n\n${text}`)
+    .join('\n\n----\n\n');
 }
 
-// In a script element only these end or confuse it.
-const safe_in_script = (text) => text.replace(/<(?=\/script|!--|script)/gi, '\\x3C');
-const safe_in_comment = (text) => text.replace(/<(?=\/?script|!--)/gi, '< ');
+// In a script element these would end it or swallow what follows. esbuild escapes them in its output.
+function checked_script(text) {
+  const danger = text.match(/<\/script|<!--/i);
+  if (danger) throw new Error(`the script contains ${danger[0]}, which a page cannot hold`);
+  return text;
+}
 
 function filled(template, values) {
   return template.replace(/@(PAGE_STYLE|PAGE_SCRIPT)@/g, (_, name) => values[name]);
 }
 
 function cpp_array(name, text) {
+  if (text.includes(')driftless"'))
+    throw new Error('the page contains the end of its string literal');
   const pieces = [];
-  for (let start = 0; start < text.length; start += longest_literal) pieces.push(`    R"driftless(${text.slice(start, start + longest_literal)})driftless"`);
+  for (let start = 0; start < text.length; start += longest_literal)
+    pieces.push(`    R"driftless(${text.slice(start, start + longest_literal)})driftless"`);
   return `constexpr std::string_view ${name}[] = {\n${pieces.join(',\n')}};\n`;
 }
 
@@ -69,9 +92,14 @@ std::span<const std::string_view> page_after_result() { return after; }
 }
 
 async function main(folder) {
-  if (!existsSync(join(here, '../../node_modules/vega'))) throw new Error('the chart libraries are missing: run `npm ci --omit=dev` in the project folder');
+  if (!existsSync(join(here, '../../node_modules/vega')))
+    throw new Error(
+      'the chart libraries are missing: run `npm ci --omit=dev` in the project folder',
+    );
   const {script, packages} = await bundled_script();
-  const PAGE_SCRIPT = `/*\nThis script contains, with their licences:\n\n${safe_in_comment(licences(packages))}\n*/\n${safe_in_script(script)}`;
+  const PAGE_SCRIPT = checked_script(
+    `/*\nThis script contains, with their licences:\n\n${licences(packages)}\n*/\n${script}`,
+  );
   const PAGE_STYLE = readFileSync(join(here, 'page.css'), 'utf8');
   const page = filled(readFileSync(join(here, 'index.html'), 'utf8'), {PAGE_SCRIPT, PAGE_STYLE});
   mkdirSync(folder, {recursive: true});

@@ -1,18 +1,37 @@
-// One embedded chart in a container of the page: drawn anew whenever a chooser changes.
+// One embedded chart in a container of the page: drawn anew whenever a chooser changes what it shows.
 import embed from 'vega-embed';
 
 const font = 'system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif';
 const ink = '#1f2933';
 const config = {
-  font, background: null,
+  font,
+  background: null,
   view: {stroke: '#c9d1d9'},
-  axis: {labelColor: ink, titleColor: ink, labelFontSize: 12, titleFontSize: 13, titleFontWeight: 600, titlePadding: 8,
-    gridColor: '#e8ecf0', domainColor: '#7b8794', tickColor: '#7b8794'},
-  legend: {labelColor: ink, titleColor: ink, labelFontSize: 12, titleFontSize: 12, labelLimit: 260, symbolSize: 90, rowPadding: 4},
+  axis: {
+    labelColor: ink,
+    titleColor: ink,
+    labelFontSize: 12,
+    titleFontSize: 13,
+    titleFontWeight: 600,
+    titlePadding: 8,
+    gridColor: '#e8ecf0',
+    domainColor: '#7b8794',
+    tickColor: '#7b8794',
+  },
+  legend: {
+    labelColor: ink,
+    titleColor: ink,
+    labelFontSize: 12,
+    titleFontSize: 12,
+    labelLimit: 260,
+    symbolSize: 90,
+    rowPadding: 4,
+  },
   text: {font},
 };
 
 const views = new Map();
+const drawn = new Map();
 const turns = new Map();
 
 // spec null says there is nothing to draw; `description` then tells the reader why.
@@ -26,6 +45,9 @@ async function draw_now(id, spec, description) {
   const container = document.getElementById(id);
   container.setAttribute('role', 'figure');
   container.setAttribute('aria-label', description);
+  const wanted = JSON.stringify([spec, description]);
+  if (drawn.get(id) === wanted) return;
+  drawn.set(id, wanted);
   views.get(id)?.finalize();
   views.delete(id);
   if (!spec) {
@@ -38,9 +60,21 @@ async function draw_now(id, spec, description) {
   }
   try {
     const actions = {export: {svg: true, png: true}, source: false, compiled: false, editor: false};
-    views.set(id, await embed(container, {...spec, description}, {
-      mode: 'vega-lite', renderer: 'svg', actions, config, downloadFileName: id, tooltip: {theme: 'light'},
-    }));
+    views.set(
+      id,
+      await embed(
+        container,
+        {...spec, description},
+        {
+          mode: 'vega-lite',
+          renderer: 'svg',
+          actions,
+          config,
+          downloadFileName: id,
+          tooltip: {theme: 'light'},
+        },
+      ),
+    );
     container.dataset.state = 'drawn';
   } catch (error) {
     container.textContent = `This chart could not be drawn: ${error.message}`;

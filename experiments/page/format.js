@@ -1,6 +1,18 @@
 // Numbers and words as a reader wants them.
 
-const superscripts = {'-': '⁻', 0: '⁰', 1: '¹', 2: '²', 3: '³', 4: '⁴', 5: '⁵', 6: '⁶', 7: '⁷', 8: '⁸', 9: '⁹'};
+const superscripts = {
+  '-': '⁻',
+  0: '⁰',
+  1: '¹',
+  2: '²',
+  3: '³',
+  4: '⁴',
+  5: '⁵',
+  6: '⁶',
+  7: '⁷',
+  8: '⁸',
+  9: '⁹',
+};
 
 export function power_of_ten(exponent) {
   return `10${[...String(exponent)].map((digit) => superscripts[digit]).join('')}`;
@@ -16,7 +28,9 @@ export function number(value, digits = 3) {
   if (value === 0) return '0';
   const exponent = Math.floor(Math.log10(Math.abs(value)));
   if (exponent < -4 || exponent > 5) {
-    return with_minus(`${Number((value / 10 ** exponent).toPrecision(digits))}·${power_of_ten(exponent)}`);
+    return with_minus(
+      `${Number((value / 10 ** exponent).toPrecision(digits))}·${power_of_ten(exponent)}`,
+    );
   }
   return with_minus(String(Number(value.toPrecision(digits))));
 }
@@ -31,7 +45,10 @@ export function with_error(mean, error) {
   const exponent = Math.floor(Math.log10(scaled_error));
   const leading = Math.floor(scaled_error / 10 ** exponent);
   const decimals = Math.max(0, -exponent + (leading === 1 ? 1 : 0));
-  const shown_error = decimals === 0 ? String(Math.round(scaled_error)) : String(Math.round(scaled_error * 10 ** decimals));
+  const shown_error =
+    decimals === 0
+      ? String(Math.round(scaled_error))
+      : String(Math.round(scaled_error * 10 ** decimals));
   const text = `${with_minus((mean / scale).toFixed(decimals))}(${shown_error})`;
   return scale === 1 ? text : `${text}·${power_of_ten(size)}`;
 }
@@ -73,8 +90,11 @@ export function observable_short(name) {
 }
 
 const statuses = {
-  ok: 'ok', unstable: 'unstable', negative_internal_energy: 'negative internal energy',
-  not_converged: 'not converged', not_applicable: 'not applicable',
+  ok: 'ok',
+  unstable: 'unstable',
+  negative_internal_energy: 'negative internal energy',
+  not_converged: 'not converged',
+  not_applicable: 'not applicable',
 };
 
 export function status_title(status) {
@@ -83,7 +103,10 @@ export function status_title(status) {
 
 // Costs are shown in one unit throughout a page: s, ms or µs by their median.
 export function cost_unit(result) {
-  const costs = result.cells.map((cell) => cell.cost?.core_seconds_per_time).filter((cost) => cost > 0).sort((a, b) => a - b);
+  const costs = result.cells
+    .map((cell) => cell.cost?.core_seconds_per_time)
+    .filter((cost) => cost > 0)
+    .sort((a, b) => a - b);
   const median = costs[Math.floor(costs.length / 2)] ?? 1;
   if (median < 1e-3) return {factor: 1e6, name: 'core-µs'};
   if (median < 1) return {factor: 1e3, name: 'core-ms'};

@@ -23,13 +23,19 @@ export function log_ticks([from, to]) {
 // The floor lies below the smallest upper end and the smallest resolved value; what is below noise
 // must not stretch the axis towards zero.
 export function error_domain(rows, also = []) {
-  const firm = rows.flatMap((row) => (row.below_noise ? [row.upper] : [row.value, row.upper, row.lower]));
+  const firm = rows.flatMap((row) =>
+    row.below_noise ? [row.upper] : [row.value, row.upper, row.lower],
+  );
   const [low, high] = log_domain([...firm, ...also], 1);
-  return [low / 2.5, high * 1.5];
+  return [low / (rows.some((row) => row.below_noise) ? 2.5 : 1.4), high * 1.5];
 }
 
 // An axis of these ticks, labelled as the rest of the page writes numbers.
 export function log_axis(ticks) {
   const labels = JSON.stringify(ticks.map((tick) => number(tick).replace(/^1·/, '')));
-  return {values: ticks, labelExpr: `${labels}[indexof(${JSON.stringify(ticks)}, datum.value)]`, labelOverlap: true};
+  return {
+    values: ticks,
+    labelExpr: `${labels}[indexof(${JSON.stringify(ticks)}, datum.value)]`,
+    labelOverlap: true,
+  };
 }

@@ -2,13 +2,37 @@
 import {element} from './dom.js';
 
 // Okabe and Ito's colours (yellow darkened for a white ground), then Tol's muted ones.
-const colours = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#332288', '#7a6a00',
-  '#882255', '#44aa99', '#333333', '#aa4499'];
-const star = 'M0,-1L0.26,-0.36L0.95,-0.31L0.42,0.14L0.59,0.81L0,0.45L-0.59,0.81L-0.42,0.14L-0.95,-0.31L-0.26,-0.36Z';
+const colours = [
+  '#0072b2',
+  '#d55e00',
+  '#009e73',
+  '#cc79a7',
+  '#e69f00',
+  '#56b4e9',
+  '#332288',
+  '#7a6a00',
+  '#882255',
+  '#44aa99',
+  '#333333',
+  '#aa4499',
+];
+const star =
+  'M0,-1L0.26,-0.36L0.95,-0.31L0.42,0.14L0.59,0.81L0,0.45L-0.59,0.81L-0.42,0.14L-0.95,-0.31L-0.26,-0.36Z';
 const hexagon = 'M0,-0.9L0.78,-0.45L0.78,0.45L0,0.9L-0.78,0.45L-0.78,-0.45Z';
 const hourglass = 'M-0.75,-0.85L0.75,-0.85L-0.75,0.85L0.75,0.85Z';
-const shapes = ['circle', 'square', 'triangle-up', 'diamond', 'triangle-down', 'cross', hexagon, star, 'triangle-right',
-  'triangle-left', hourglass];
+const shapes = [
+  'circle',
+  'square',
+  'triangle-up',
+  'diamond',
+  'triangle-down',
+  'cross',
+  hexagon,
+  star,
+  'triangle-right',
+  'triangle-left',
+  hourglass,
+];
 
 export const failure_cross = 'M-0.8,-0.8L0.8,0.8M0.8,-0.8L-0.8,0.8';
 
@@ -38,7 +62,13 @@ export function method_tag(label, labels) {
   const shape = shapes[index % shapes.length];
   const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
   const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
-  for (const [key, value] of Object.entries({viewBox: '-1.15 -1.15 2.3 2.3', width: 13, height: 13, 'aria-hidden': 'true', class: 'method-mark'})) {
+  for (const [key, value] of Object.entries({
+    viewBox: '-1.15 -1.15 2.3 2.3',
+    width: 13,
+    height: 13,
+    'aria-hidden': 'true',
+    class: 'method-mark',
+  })) {
     svg.setAttribute(key, value);
   }
   path.setAttribute('d', outlines[shape] ?? shape);

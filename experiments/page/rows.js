@@ -17,18 +17,24 @@ export function time_steps(cells) {
 function shared_fields(cell, unit) {
   const cost = cost_of(cell);
   return {
-    method: method_label(cell), time_step: cell.time_step, step_text: number(cell.time_step),
-    cost: cost === null ? null : cost * unit.factor, cost_text: cost === null ? 'not known' : `${number(cost * unit.factor)} ${unit.name}`,
+    method: method_label(cell),
+    time_step: cell.time_step,
+    step_text: number(cell.time_step),
+    cost: cost === null ? null : cost * unit.factor,
+    cost_text: cost === null ? 'not known' : `${number(cost * unit.factor)} ${unit.name}`,
   };
 }
 
 // Deviations of an observable, with texts for tooltips.
 export function error_rows(cells, observable, unit) {
-  return cells.map((cell) => ({cell, judgement: judge(cell, observable)}))
+  return cells
+    .map((cell) => ({cell, judgement: judge(cell, observable)}))
     .filter(({judgement}) => judgement.upper > 0)
     .map(({cell, judgement}) => ({
       ...shared_fields(cell, unit),
-      value: judgement.value, lower: judgement.lower, upper: judgement.upper,
+      value: judgement.value,
+      lower: judgement.lower,
+      upper: judgement.upper,
       below_noise: judgement.state === 'below_noise',
       error_text: deviation(judgement.value, observable),
       interval_text: `${deviation(judgement.lower, observable)} … ${deviation(judgement.upper, observable)}`,
@@ -39,32 +45,43 @@ export function error_rows(cells, observable, unit) {
 
 // A measured size without an exact value, such as the random walk of the energy.
 export function size_rows(cells, observable, unit) {
-  return cells.filter((cell) => cell.status === 'ok' && Number.isFinite(cell.observables?.[observable]?.mean))
+  return cells
+    .filter((cell) => cell.status === 'ok' && Number.isFinite(cell.observables?.[observable]?.mean))
     .map((cell) => {
       const {mean, error} = cell.observables[observable];
       const value = Math.abs(mean);
       const half = 1.96 * (error ?? 0);
       const below_noise = value - half <= 0;
       return {
-        ...shared_fields(cell, unit), value, lower: Math.max(0, value - half), upper: value + half, below_noise,
+        ...shared_fields(cell, unit),
+        value,
+        lower: Math.max(0, value - half),
+        upper: value + half,
+        below_noise,
         error_text: number(value, 2),
         interval_text: `${number(Math.max(0, value - half), 2)} … ${number(value + half, 2)}`,
-        worst_text: observable_short(observable), mean_text: with_error(mean, error),
+        worst_text: observable_short(observable),
+        mean_text: with_error(mean, error),
       };
-    }).filter((row) => row.upper > 0);
+    })
+    .filter((row) => row.upper > 0);
 }
 
 export function failure_rows(cells, unit) {
   const failed = cells.filter((cell) => cell.status !== 'ok' && cell.status !== 'not_applicable');
   return failed.map((cell) => ({
-    ...shared_fields(cell, unit), status_text: status_title(cell.status),
+    ...shared_fields(cell, unit),
+    status_text: status_title(cell.status),
     short_text: {negative_internal_energy: 'u < 0'}[cell.status] ?? status_title(cell.status),
-    failed_text: `${cell.failed_replicas} of ${cell.replicas} replicas`, cause_text: cell.failures?.[0]?.cause ?? '',
+    failed_text: `${cell.failed_replicas} of ${cell.replicas} replicas`,
+    cause_text: cell.failures?.[0]?.cause ?? '',
   }));
 }
 
 export function mean_text(observable) {
   if (!observable || !Number.isFinite(observable.mean)) return '–';
-  const exact = Number.isFinite(observable.exact) ? `, exact ${with_error(observable.exact, observable.exact_error)}` : '';
+  const exact = Number.isFinite(observable.exact)
+    ? `, exact ${with_error(observable.exact, observable.exact_error)}`
+    : '';
   return `${with_error(observable.mean, observable.error)}${exact}`;
 }

@@ -4,29 +4,111 @@ import {writeFileSync} from 'node:fs';
 
 const time_steps = [0.01, 0.02, 0.05, 0.1, 0.2];
 const tolerances = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1];
-const answered_observables = ['equilibrium', 'kinetic_temperature', 'internal_energy_variance', 'energy_drift'];
-const equilibrium_parts = ['kinetic_temperature', 'internal_temperature', 'internal_energy_variance'];
+const answered_observables = [
+  'equilibrium',
+  'kinetic_temperature',
+  'internal_energy_variance',
+  'energy_drift',
+];
+const equilibrium_parts = [
+  'kinetic_temperature',
+  'internal_temperature',
+  'internal_energy_variance',
+];
 const boltzmann_temperature = 0.55;
 const shape = 51;
 const replicas = 4;
 
 // order and size of the error at step 0.1, core-seconds per step, step from which it fails, and how.
 const methods = [
-  {name: 'averaged-drift', options: {as_published: true}, order: 1, size: 0.031, per_step: 1.0e-4, drift: 2e-3, fails_from: 0.2, failure: 'negative_internal_energy'},
-  {name: 'avalos-mackie-implicit', order: 1, size: 0.012, per_step: 3.4e-4, drift: 6e-4, fails_from: 0.2, failure: 'not_converged'},
-  {name: 'avalos-mackie-midpoint', order: 2, size: 0.006, per_step: 3.9e-4, drift: 0, fails_from: 1, failure: ''},
-  {name: 'espanol', order: 1, size: 0.035, per_step: 0.9e-4, drift: 3e-3, fails_from: 0.1, failure: 'unstable', noise_only: true},
-  {name: 'marsh-coveney', order: 1, size: 0.028, per_step: 0.95e-4, drift: 2.4e-3, fails_from: 0.2, failure: 'unstable', noise_only: true},
-  {name: 'shardlow-s1', order: 1, size: 0.008, per_step: 1.4e-4, drift: 0, fails_from: 1, failure: ''},
-  {name: 'shardlow-s2', order: 2, size: 0.005, per_step: 2.2e-4, drift: 0, fails_from: 1, failure: ''},
-  {name: 'isoenergetic-verlet', order: 2, size: 0.015, per_step: 1.3e-4, drift: 0, fails_from: 0.2, failure: 'unstable', noise_only: true},
+  {
+    name: 'averaged-drift',
+    options: {as_published: true},
+    order: 1,
+    size: 0.031,
+    per_step: 1.0e-4,
+    drift: 2e-3,
+    fails_from: 0.2,
+    failure: 'negative_internal_energy',
+  },
+  {
+    name: 'avalos-mackie-implicit',
+    order: 1,
+    size: 0.012,
+    per_step: 3.4e-4,
+    drift: 6e-4,
+    fails_from: 0.2,
+    failure: 'not_converged',
+  },
+  {
+    name: 'avalos-mackie-midpoint',
+    order: 2,
+    size: 0.006,
+    per_step: 3.9e-4,
+    drift: 0,
+    fails_from: 1,
+    failure: '',
+  },
+  {
+    name: 'espanol',
+    order: 1,
+    size: 0.035,
+    per_step: 0.9e-4,
+    drift: 3e-3,
+    fails_from: 0.1,
+    failure: 'unstable',
+    noise_only: true,
+  },
+  {
+    name: 'marsh-coveney',
+    order: 1,
+    size: 0.028,
+    per_step: 0.95e-4,
+    drift: 2.4e-3,
+    fails_from: 0.2,
+    failure: 'unstable',
+    noise_only: true,
+  },
+  {
+    name: 'shardlow-s1',
+    order: 1,
+    size: 0.008,
+    per_step: 1.4e-4,
+    drift: 0,
+    fails_from: 1,
+    failure: '',
+  },
+  {
+    name: 'shardlow-s2',
+    order: 2,
+    size: 0.005,
+    per_step: 2.2e-4,
+    drift: 0,
+    fails_from: 1,
+    failure: '',
+  },
+  {
+    name: 'isoenergetic-verlet',
+    order: 2,
+    size: 0.015,
+    per_step: 1.3e-4,
+    drift: 0,
+    fails_from: 0.2,
+    failure: 'unstable',
+    noise_only: true,
+  },
 ];
 
 // A method's name with its options, as answers and orders have it.
-const label_of = (method) => [method.name ?? method.method, ...Object.entries(method.options ?? {}).map(([key, value]) => `${key} ${value}`)].join(', ');
+const label_of = (method) =>
+  [
+    method.name ?? method.method,
+    ...Object.entries(method.options ?? {}).map(([key, value]) => `${key} ${value}`),
+  ].join(', ');
 
 let random_state = 20240229;
-function uniform() {  // mulberry32
+function uniform() {
+  // mulberry32
   random_state = (random_state + 0x6d2b79f5) | 0;
   let t = Math.imul(random_state ^ (random_state >>> 15), 1 | random_state);
   t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
@@ -38,20 +120,36 @@ const rounded = (value, digits = 5) => Number(value.toPrecision(digits));
 function deviation_of(mean, exact, error, scale) {
   const value = Math.abs(mean - exact) / scale;
   const half = (1.96 * error) / scale;
-  return {value: rounded(value), lower: rounded(Math.max(0, value - half)), upper: rounded(value + half), below_noise: value - half <= 0};
+  return {
+    value: rounded(value),
+    lower: rounded(Math.max(0, value - half)),
+    upper: rounded(value + half),
+    below_noise: value - half <= 0,
+  };
 }
 
 function measured(exact, bias, relative_error, unit, scale = Math.abs(exact)) {
   const error = relative_error * scale;
   const mean = exact + bias * scale + error * normal();
   return {
-    mean: rounded(mean, 7), error: rounded(error, 3), effective_samples: Math.round(2e3 + 6e3 * uniform()),
-    exact: rounded(exact, 7), unit, status: 'ok', deviation: deviation_of(mean, exact, error, scale),
+    mean: rounded(mean, 7),
+    error: rounded(error, 3),
+    effective_samples: Math.round(2e3 + 6e3 * uniform()),
+    exact: rounded(exact, 7),
+    unit,
+    status: 'ok',
+    deviation: deviation_of(mean, exact, error, scale),
   };
 }
 
 function measured_only(mean, error, unit) {
-  return {mean: rounded(mean, 6), error: rounded(error, 3), effective_samples: Math.round(2e3 + 3e3 * uniform()), unit, status: 'ok'};
+  return {
+    mean: rounded(mean, 6),
+    error: rounded(error, 3),
+    effective_samples: Math.round(2e3 + 3e3 * uniform()),
+    unit,
+    status: 'ok',
+  };
 }
 
 function distance(bias) {
@@ -60,8 +158,18 @@ function distance(bias) {
   const upper = Math.sqrt(Math.max(0, mean + 1.96 * error));
   const lower = Math.sqrt(Math.max(0, mean - 1.96 * error));
   return {
-    mean: rounded(mean), error: rounded(error), effective_samples: 4000, exact: 0, unit: '1', status: 'ok',
-    deviation: {value: rounded(Math.sqrt(Math.max(0, mean))), lower: rounded(lower), upper: rounded(upper), below_noise: lower === 0},
+    mean: rounded(mean),
+    error: rounded(error),
+    effective_samples: 4000,
+    exact: 0,
+    unit: '1',
+    status: 'ok',
+    deviation: {
+      value: rounded(Math.sqrt(Math.max(0, mean))),
+      lower: rounded(lower),
+      upper: rounded(upper),
+      below_noise: lower === 0,
+    },
   };
 }
 
@@ -73,19 +181,35 @@ function observables_of(method, time_step, scene_index) {
     kinetic_temperature: measured(1.1, -bias, noise, 'T'),
     internal_temperature: measured(1.1, 0.4 * bias, noise * 0.7, 'T'),
     internal_energy_mean: measured(shape * boltzmann_temperature, 0.05 * bias, noise * 0.3, 'kT'),
-    internal_energy_variance: measured(shape * boltzmann_temperature ** 2, 1.2 * bias, noise * 2.5, 'kT^2'),
+    internal_energy_variance: measured(
+      shape * boltzmann_temperature ** 2,
+      1.2 * bias,
+      noise * 2.5,
+      'kT^2',
+    ),
     internal_energy_skewness: measured(2 / Math.sqrt(shape), 2 * bias, noise * 20, '1'),
     momentum_distance: distance(bias),
     internal_energy_distance: distance(0.8 * bias),
     pressure: measured(0.55, -bias, noise * 1.5, 'm/(l t^2)'),
     kinetic_share: measured(0.0287, -bias, noise * 1.2, '1'),
     energy_drift: measured(0, method.drift ? drift : 0, method.drift ? 4e-6 : 1e-13, 'kT/time', 1),
-    energy_walk: measured_only(method.drift ? 2 * method.drift * (time_step / 0.1) : 2e-24, method.drift ? 1e-4 * method.drift / 1e-3 : 4e-25, '(kT)^2/time'),
+    energy_walk: measured_only(
+      method.drift ? 2 * method.drift * (time_step / 0.1) : 2e-24,
+      method.drift ? (1e-4 * method.drift) / 1e-3 : 4e-25,
+      '(kT)^2/time',
+    ),
     momentum_error: measured_only(3e-15, 6e-16, 'momentum'),
   };
-  if (scene_index === 1) not_resolved(values.internal_energy_skewness, 'needs 20 relaxation times, had 14');
+  if (scene_index === 1)
+    not_resolved(values.internal_energy_skewness, 'needs 20 relaxation times, had 14');
   if (method.name === 'averaged-drift' && time_step === 0.01) {
-    for (const name of ['internal_temperature', 'internal_energy_mean', 'internal_energy_variance', 'internal_energy_skewness', 'internal_energy_distance']) {
+    for (const name of [
+      'internal_temperature',
+      'internal_energy_mean',
+      'internal_energy_variance',
+      'internal_energy_skewness',
+      'internal_energy_distance',
+    ]) {
       not_resolved(values[name], 'replicas disagree beyond their errors');
     }
   }
@@ -97,8 +221,11 @@ function not_resolved(observable, note) {
   observable.note = note;
 }
 
-function log_gamma(x) {  // Stirling series, enough for x > 8
-  return (x - 0.5) * Math.log(x) - x + 0.5 * Math.log(2 * Math.PI) + 1 / (12 * x) - 1 / (360 * x ** 3);
+function log_gamma(x) {
+  // Stirling series, enough for x > 8
+  return (
+    (x - 0.5) * Math.log(x) - x + 0.5 * Math.log(2 * Math.PI) + 1 / (12 * x) - 1 / (360 * x ** 3)
+  );
 }
 
 function curve(from, to, exact_law, measured_law) {
@@ -108,17 +235,46 @@ function curve(from, to, exact_law, measured_law) {
   const peak = Math.max(...exact);
   const error = x.map((value) => 0.012 * Math.sqrt(measured_law(value) * peak));
   const density = x.map((value, i) => Math.max(0, measured_law(value) + error[i] * normal()));
-  return {x: x.map((v) => rounded(v, 4)), density: density.map((v) => rounded(v, 4)), error: error.map((v) => rounded(v, 3)), exact: exact.map((v) => rounded(v, 4))};
+  return {
+    x: x.map((v) => rounded(v, 4)),
+    density: density.map((v) => rounded(v, 4)),
+    error: error.map((v) => rounded(v, 3)),
+    exact: exact.map((v) => rounded(v, 4)),
+  };
 }
 
-const gamma_law = (scale) => (u) => Math.exp((shape - 1) * Math.log(u / scale) - u / scale - log_gamma(shape)) / scale;
-const normal_law = (variance) => (p) => Math.exp((-p * p) / (2 * variance)) / Math.sqrt(2 * Math.PI * variance);
+const gamma_law = (scale) => (u) =>
+  Math.exp((shape - 1) * Math.log(u / scale) - u / scale - log_gamma(shape)) / scale;
+const normal_law = (variance) => (p) =>
+  Math.exp((-p * p) / (2 * variance)) / Math.sqrt(2 * Math.PI * variance);
 
 function curves_of(method, time_step) {
   const bias = method.size * (time_step / 0.1) ** method.order;
+  const radial =
+    method.name === 'shardlow-s2'
+      ? {
+          radial_distribution: curve(
+            0,
+            2.4,
+            () => 1,
+            () => 1,
+          ),
+        }
+      : {};
   return {
-    internal_energy: curve(16, 42, gamma_law(boltzmann_temperature), gamma_law(boltzmann_temperature * (1 + bias))),
-    momentum: curve(-2.5, 2.5, normal_law(boltzmann_temperature), normal_law(boltzmann_temperature * (1 - 3 * bias))),
+    ...radial,
+    internal_energy: curve(
+      16,
+      42,
+      gamma_law(boltzmann_temperature),
+      gamma_law(boltzmann_temperature * (1 + bias)),
+    ),
+    momentum: curve(
+      -2.5,
+      2.5,
+      normal_law(boltzmann_temperature),
+      normal_law(boltzmann_temperature * (1 - 3 * bias)),
+    ),
   };
 }
 
@@ -134,7 +290,8 @@ function failures_of(method, time_step) {
   return Array.from({length: failed}, (_, replica) => {
     const step = Math.round(20 + 4000 * uniform() * (0.1 / time_step) ** 2);
     const causes = {
-      unstable: 'momentum is not finite', negative_internal_energy: `internal energy of particle ${Math.floor(1000 * uniform())} fell below zero`,
+      unstable: 'momentum is not finite',
+      negative_internal_energy: `internal energy of particle ${Math.floor(1000 * uniform())} fell below zero`,
       not_converged: 'fixed-point iteration did not converge in 200 iterations',
     };
     return {replica, cause: causes[method.failure], step, time: rounded(step * time_step, 6)};
@@ -144,32 +301,64 @@ function failures_of(method, time_step) {
 function off_equilibrium_of(method, time_step) {
   const bias = method.size * (time_step / 0.1) ** method.order;
   const largest_z = rounded(0.8 + 2 * uniform() + (bias > 0.04 ? 5 : 0), 3);
-  return {agrees: largest_z < 4, largest_z, observable: uniform() < 0.5 ? 'internal_temperature' : 'internal_energy_variance'};
+  return {
+    agrees: largest_z < 4,
+    largest_z,
+    observable: uniform() < 0.5 ? 'internal_temperature' : 'internal_energy_variance',
+  };
 }
 
 function cost_of(method, time_step, failed) {
   return {
-    core_seconds_per_time: failed && method.failure === 'not_converged' ? null : rounded(method.per_step / time_step * (1 + 0.02 * normal()), 4),
-    spread: 0.03, pair_evaluations_per_step: 4000, random_numbers_per_step: 8000,
-    solver_iterations_per_step: method.per_step > 3e-4 ? 7 : 0, steps: Math.round(500 / time_step),
+    core_seconds_per_time:
+      failed && method.failure === 'not_converged'
+        ? null
+        : rounded((method.per_step / time_step) * (1 + 0.02 * normal()), 4),
+    spread: 0.03,
+    pair_evaluations_per_step: 4000,
+    random_numbers_per_step: 8000,
+    solver_iterations_per_step: method.per_step > 3e-4 ? 7 : 0,
+    steps: Math.round(500 / time_step),
   };
 }
 
 function cell_of(scene, scene_index, method, time_step) {
   const cell = {scene: scene.name, method: method.name, options: method.options ?? {}, time_step};
   if (method.noise_only && scene.parameters.friction_closure === 'friction') {
-    return {...cell, status: 'not_applicable', reason: `${method.name} is built for the noise closure; this scene has the friction closure`,
-      replicas: 0, failed_replicas: 0, conditioned_on_survival: false, observables: {}, failures: [], curves: {}};
+    return {
+      ...cell,
+      status: 'not_applicable',
+      reason: `${method.name} is built for the noise closure; this scene has the friction closure`,
+      replicas: 0,
+      failed_replicas: 0,
+      conditioned_on_survival: false,
+      observables: {},
+      failures: [],
+      curves: {},
+    };
   }
   const failed = time_step >= method.fails_from;
   const failures = failed ? failures_of(method, time_step) : [];
   const survivors = replicas - failures.length;
-  const measured_fields = survivors === 0
-    ? {observables: {}, curves: {}}
-    : {observables: observables_of(method, time_step, scene_index), off_equilibrium: off_equilibrium_of(method, time_step),
-       curves: curves_of(method, time_step), energy_trace: trace_of(method, time_step)};
-  return {...cell, status: failed ? method.failure : 'ok', replicas, failed_replicas: failures.length,
-    conditioned_on_survival: failed && survivors > 0, ...measured_fields, failures, cost: cost_of(method, time_step, failed)};
+  const measured_fields =
+    survivors === 0
+      ? {observables: {}, curves: {}}
+      : {
+          observables: observables_of(method, time_step, scene_index),
+          off_equilibrium: off_equilibrium_of(method, time_step),
+          curves: curves_of(method, time_step),
+          energy_trace: trace_of(method, time_step),
+        };
+  return {
+    ...cell,
+    status: failed ? method.failure : 'ok',
+    replicas,
+    failed_replicas: failures.length,
+    conditioned_on_survival: failed && survivors > 0,
+    ...measured_fields,
+    failures,
+    cost: cost_of(method, time_step, failed),
+  };
 }
 
 function orders_of(cells) {
@@ -177,10 +366,23 @@ function orders_of(cells) {
   for (const scene of new Set(cells.map((cell) => cell.scene))) {
     for (const method of methods) {
       for (const observable of [...equilibrium_parts, 'energy_drift']) {
-        const points = cells.filter((cell) => cell.scene === scene && cell.method === method.name && cell.status === 'ok' &&
-          cell.observables[observable].status === 'ok' && !cell.observables[observable].deviation.below_noise);
+        const points = cells.filter(
+          (cell) =>
+            cell.scene === scene &&
+            cell.method === method.name &&
+            cell.status === 'ok' &&
+            cell.observables[observable].status === 'ok' &&
+            !cell.observables[observable].deviation.below_noise,
+        );
         if (points.length < 2) continue;
-        orders.push({scene, method: label_of(method), observable, order: rounded(slope(points, observable), 3), error: rounded(0.3 / points.length, 2), points: points.length});
+        orders.push({
+          scene,
+          method: label_of(method),
+          observable,
+          order: rounded(slope(points, observable), 3),
+          error: rounded(0.3 / points.length, 2),
+          points: points.length,
+        });
       }
     }
   }
@@ -198,49 +400,137 @@ function slope(cells, observable) {
 
 function upper_of(cell, observable) {
   const parts = observable === 'equilibrium' ? equilibrium_parts : [observable];
-  const usable = cell.status === 'ok' && parts.every((part) => cell.observables[part].status === 'ok');
-  return usable ? Math.max(...parts.map((part) => cell.observables[part].deviation.upper)) : Infinity;
+  const usable =
+    cell.status === 'ok' && parts.every((part) => cell.observables[part].status === 'ok');
+  return usable
+    ? Math.max(...parts.map((part) => cell.observables[part].deviation.upper))
+    : Infinity;
 }
 
 function answer_of(cells, scene, observable, tolerance) {
   const passing = cells
-    .filter((cell) => cell.scene === scene && upper_of(cell, observable) <= tolerance && cell.cost.core_seconds_per_time !== null)
-    .map((cell) => ({method: label_of(cell), time_step: cell.time_step, cost: cell.cost.core_seconds_per_time, upper: upper_of(cell, observable)}))
+    .filter(
+      (cell) =>
+        cell.scene === scene &&
+        upper_of(cell, observable) <= tolerance &&
+        cell.cost.core_seconds_per_time !== null,
+    )
+    .map((cell) => ({
+      method: label_of(cell),
+      time_step: cell.time_step,
+      cost: cell.cost.core_seconds_per_time,
+      upper: upper_of(cell, observable),
+    }))
     .sort((a, b) => a.cost - b.cost);
   const best = passing[0];
-  const what = observable === 'equilibrium' ? 'temperatures and the variance of the internal energy' : `the ${observable.replaceAll('_', ' ')}`;
+  const what =
+    observable === 'equilibrium'
+      ? 'temperatures and the variance of the internal energy'
+      : `the ${observable.replaceAll('_', ' ')}`;
   const aim = `For ${scene}, to have ${what} within ${rounded(tolerance * 100, 3)} %`;
   if (!best) {
-    return {scene, observable, tolerance, method: null, time_step: null, cost: null, upper: null, runner_up: null,
-      sentence: `${aim}: no method and step of this study is shown to be.`};
+    return {
+      scene,
+      observable,
+      tolerance,
+      method: null,
+      time_step: null,
+      cost: null,
+      upper: null,
+      runner_up: null,
+      sentence: `${aim}: no method and step of this study is shown to be.`,
+    };
   }
   const runner_up = passing.find((entry) => entry.method !== best.method) ?? null;
-  const next = runner_up ? `; next ${runner_up.method} at step ${runner_up.time_step}, ${rounded(runner_up.cost / best.cost, 2)} times the cost` : '';
-  return {scene, observable, tolerance, ...best, runner_up,
-    sentence: `${aim}: ${best.method} at step ${best.time_step}, ${rounded(best.cost, 3)} core-seconds per unit time, wrong by at most ${rounded(best.upper * 100, 2)} %${next}.`};
+  const next = runner_up
+    ? `; next ${runner_up.method} at step ${runner_up.time_step}, ${rounded(runner_up.cost / best.cost, 2)} times the cost`
+    : '';
+  return {
+    scene,
+    observable,
+    tolerance,
+    ...best,
+    runner_up,
+    sentence: `${aim}: ${best.method} at step ${best.time_step}, ${rounded(best.cost, 3)} core-seconds per unit time, wrong by at most ${rounded(best.upper * 100, 2)} %${next}.`,
+  };
 }
 
 const shared_parameters = {
-  particles: 1000, density: 1, temperature: 1.1, boltzmann: 0.5, mass: 1, heat_capacity: 50, repulsion: 0, friction: 1,
-  friction_range: 1.24, conduction: 850, heat_form: 'inverse-temperature', heat_range: 1.24, weight_exponent: 2, frame_velocity: [0, 0, 0], frozen: false,
+  particles: 1000,
+  density: 1,
+  temperature: 1.1,
+  boltzmann: 0.5,
+  mass: 1,
+  heat_capacity: 50,
+  repulsion: 0,
+  friction: 1,
+  friction_range: 1.24,
+  conduction: 850,
+  heat_form: 'inverse-temperature',
+  heat_range: 1.24,
+  weight_exponent: 2,
+  frame_velocity: [0, 0, 0],
+  frozen: false,
 };
 const scenes = ['friction', 'noise'].map((closure) => ({
-  name: `mackie-1999, ${closure} closure`, preset: 'mackie-1999', parameters: {...shared_parameters, friction_closure: closure},
-  relaxation_time: 11.4, resolves_internal_energy: true, energy_per_particle: 28.875, note: closure === 'noise' ? 'The same friction coefficient at the temperature T, but with the noise amplitude held constant.' : undefined,
+  name: `mackie-1999, ${closure} closure`,
+  preset: 'mackie-1999',
+  parameters: {...shared_parameters, friction_closure: closure},
+  relaxation_time: 11.4,
+  resolves_internal_energy: true,
+  energy_per_particle: 28.875,
+  note:
+    closure === 'noise'
+      ? 'The same friction coefficient at the temperature T, but with the noise amplitude held constant.'
+      : undefined,
 }));
-const cells = scenes.flatMap((scene, index) => methods.flatMap((method) => time_steps.map((step) => cell_of(scene, index, method, step))));
+const cells = scenes.flatMap((scene, index) =>
+  methods.flatMap((method) => time_steps.map((step) => cell_of(scene, index, method, step))),
+);
 const study = {
-  format: 'driftless-study/1', name: 'first light', scenes: scenes.map((scene) => ({preset: scene.preset, friction_closure: scene.parameters.friction_closure})),
-  methods: methods.map((method) => (method.options ? {name: method.name, options: method.options} : method.name)), time_steps, duration: {equilibrate: 60, measure: 500, sample_every: 1}, replicas, seed: 1999,
+  format: 'driftless-study/1',
+  name: 'first light',
+  scenes: scenes.map((scene) => ({
+    preset: scene.preset,
+    friction_closure: scene.parameters.friction_closure,
+  })),
+  methods: methods.map((method) =>
+    method.options ? {name: method.name, options: method.options} : method.name,
+  ),
+  time_steps,
+  duration: {equilibrate: 60, measure: 500, sample_every: 1},
+  replicas,
+  seed: 1999,
 };
 const result = {
-  format: 'driftless-result/1', name: 'first light',
-  provenance: {version: '0.1.0', commit: '0123456789abcdef0123456789abcdef01234567', dirty: false, compiler: 'g++ 12.2.0', flags: '-O3 -march=native',
-    cpu: 'Example CPU @ 2.60GHz', threads: 4, seed: 1999, date: '2024-02-29T12:00:00Z', command: 'driftless run studies/first-light.json -o driftless-results/first-light'},
-  study, scenes, cells, orders: orders_of(cells),
-  answers: scenes.flatMap((scene) => answered_observables.flatMap((observable) => tolerances.map((tolerance) => answer_of(cells, scene.name, observable, tolerance)))),
+  format: 'driftless-result/1',
+  name: 'first light',
+  provenance: {
+    version: '0.1.0',
+    commit: '0123456789abcdef0123456789abcdef01234567',
+    dirty: false,
+    compiler: 'g++ 12.2.0',
+    flags: '-O3 -march=native',
+    cpu: 'Example CPU @ 2.60GHz',
+    threads: 4,
+    seed: 1999,
+    date: '2024-02-29T12:00:00Z',
+    command: 'driftless run studies/first-light.json -o driftless-results/first-light',
+  },
+  study,
+  scenes,
+  cells,
+  orders: orders_of(cells),
+  answers: scenes.flatMap((scene) =>
+    answered_observables.flatMap((observable) =>
+      tolerances.map((tolerance) => answer_of(cells, scene.name, observable, tolerance)),
+    ),
+  ),
 };
 
 const {cells: listed_cells, ...rest} = result;
-const text = JSON.stringify(rest, null, 1).replace(/\n\}$/, `,\n "cells": [\n${listed_cells.map((cell) => JSON.stringify(cell)).join(',\n')}\n ]\n}\n`);
+const text = JSON.stringify(rest, null, 1).replace(
+  /\n\}$/,
+  `,\n "cells": [\n${listed_cells.map((cell) => JSON.stringify(cell)).join(',\n')}\n ]\n}\n`,
+);
 writeFileSync(new URL('sample_result.json', import.meta.url), text);

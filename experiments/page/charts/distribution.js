@@ -10,43 +10,136 @@ function rows_of(curve) {
     const exact = curve.exact?.[index] ?? null;
     const difference = exact === null ? null : density - exact;
     return {
-      x, density, exact, low: density - half, high: density + half, half,
-      difference, difference_low: exact === null ? null : difference - half, difference_high: exact === null ? null : difference + half,
+      x,
+      density,
+      exact,
+      low: density - half,
+      high: density + half,
+      half,
+      difference,
+      difference_low: exact === null ? null : difference - half,
+      difference_high: exact === null ? null : difference + half,
     };
   });
 }
 
 function panel(rows, height, layer) {
-  return {width: 'container', height, autosize: {type: 'fit-x', contains: 'padding'}, data: {values: rows}, layer};
+  return {
+    width: 'container',
+    height,
+    autosize: {type: 'fit-x', contains: 'padding'},
+    data: {values: rows},
+    layer,
+  };
 }
 
-const tips = [{field: 'x', format: '.4~g'}, {field: 'density', title: 'measured', format: '.4~g'}, {field: 'exact', title: 'exact', format: '.4~g'},
-  {field: 'half', title: '95 % half width', format: '.2~g'}];
-const axis_y = {format: '~g', minExtent: 52, maxExtent: 52, tickCount: 5};
+const tips = [
+  {field: 'x', format: '.4~g'},
+  {field: 'density', title: 'measured', format: '.4~g'},
+  {field: 'exact', title: 'exact', format: '.4~g'},
+  {field: 'half', title: '95 % half width', format: '.2~g'},
+];
+const axis_y = {minExtent: 52, maxExtent: 52, tickCount: 5};
 
-export function distribution({curve, title}) {
+// A few bins with next to no samples (g(r) near 0) must not set the scale; their bars leave the frame.
+function firm(rows) {
+  const halves = rows.map((row) => row.half).sort((a, b) => a - b);
+  return rows.filter((row) => row.half <= 6 * halves[Math.floor(halves.length / 2)]);
+}
+
+function domain_of(rows, lows, highs) {
+  const low = Math.min(0, ...firm(rows).map((row) => row[lows]));
+  const high = Math.max(0, ...firm(rows).map((row) => row[highs]));
+  const space = 0.05 * (high - low || 1);
+  return [low < 0 ? low - space : low, high + space];
+}
+
+export function distribution({curve, title, y_title}) {
   if (!curve?.x?.length) return null;
   const rows = rows_of(curve);
-  const x = {field: 'x', type: 'quantitative', title, scale: {zero: false, nice: false, padding: 6}};
-  const y = {field: 'density', type: 'quantitative', title: 'density', axis: axis_y};
-  const kind = (name) => ({datum: name, type: 'nominal', scale: {domain: ['measured, 95 % interval', 'exact law'], range: [measured, law]}, legend: {title: null, orient: 'top', symbolType: 'stroke', symbolStrokeWidth: 3}});
-  const exact = rows.some((row) => row.exact !== null)
-    ? [{name: 'exact', mark: {type: 'line', strokeWidth: 1.6, interpolate: 'cardinal', tooltip: null}, encoding: {x, y: {...y, field: 'exact'}, stroke: kind('exact law')}}] : [];
+  const x = {
+    field: 'x',
+    type: 'quantitative',
+    title,
+    scale: {zero: false, nice: false, padding: 6},
+  };
+  const y = {
+    field: 'density',
+    type: 'quantitative',
+    title: y_title,
+    axis: axis_y,
+    scale: {
+      domain: domain_of(
+        rows.map((row) => ({...row, low: 0})),
+        'low',
+        'high',
+      ),
+    },
+  };
+  const has_law = rows.some((row) => row.exact !== null);
+  const domain = has_law ? ['measured', 'exact law'] : ['measured'];
+  const kind = (name) => ({
+    datum: name,
+    type: 'nominal',
+    scale: {domain, range: [measured, law]},
+    legend: {title: null, orient: 'top', symbolType: 'stroke', symbolStrokeWidth: 3},
+  });
+  const exact = has_law
+    ? [
+        {
+          name: 'exact',
+          mark: {type: 'line', strokeWidth: 1.6, interpolate: 'cardinal', tooltip: null},
+          encoding: {x, y: {...y, field: 'exact'}, stroke: kind('exact law')},
+        },
+      ]
+    : [];
   return panel(rows, 240, [
     ...exact,
-    {name: 'intervals', mark: {type: 'rule', strokeWidth: 1.6}, encoding: {x, y: {...y, field: 'low'}, y2: {field: 'high'}, stroke: kind('measured, 95 % interval')}},
-    {name: 'points', mark: {type: 'point', filled: true, size: 34, fill: measured, opacity: 1}, encoding: {x, y, tooltip: tips}},
+    {
+      name: 'intervals',
+      mark: {type: 'rule', clip: true, strokeWidth: 1.6},
+      encoding: {x, y: {...y, field: 'low'}, y2: {field: 'high'}, stroke: kind('measured')},
+    },
+    {
+      name: 'points',
+      mark: {type: 'point', clip: true, filled: true, size: 34, fill: measured, opacity: 1},
+      encoding: {x, y, tooltip: tips},
+    },
   ]);
 }
 
 export function difference({curve, title}) {
   const rows = curve?.x?.length ? rows_of(curve).filter((row) => row.exact !== null) : [];
   if (!rows.length) return null;
-  const x = {field: 'x', type: 'quantitative', title, scale: {zero: false, nice: false, padding: 6}};
-  const y = {field: 'difference', type: 'quantitative', title: 'measured − exact', axis: {...axis_y, tickCount: 4}};
+  const x = {
+    field: 'x',
+    type: 'quantitative',
+    title,
+    scale: {zero: false, nice: false, padding: 6},
+  };
+  const y = {
+    field: 'difference',
+    type: 'quantitative',
+    title: 'measured − exact',
+    axis: {...axis_y, tickCount: 4},
+    scale: {domain: domain_of(rows, 'difference_low', 'difference_high')},
+  };
   return panel(rows, 120, [
-    {name: 'zero', data: {values: [{difference: 0}]}, mark: {type: 'rule', stroke: law, strokeWidth: 1.4, tooltip: null}, encoding: {y}},
-    {name: 'intervals', mark: {type: 'rule', stroke: measured, strokeWidth: 1.6}, encoding: {x, y: {...y, field: 'difference_low'}, y2: {field: 'difference_high'}}},
-    {name: 'points', mark: {type: 'point', filled: true, size: 34, fill: measured, opacity: 1}, encoding: {x, y, tooltip: tips}},
+    {
+      name: 'zero',
+      data: {values: [{difference: 0}]},
+      mark: {type: 'rule', stroke: law, strokeWidth: 1.4, tooltip: null},
+      encoding: {y},
+    },
+    {
+      name: 'intervals',
+      mark: {type: 'rule', clip: true, stroke: measured, strokeWidth: 1.6},
+      encoding: {x, y: {...y, field: 'difference_low'}, y2: {field: 'difference_high'}},
+    },
+    {
+      name: 'points',
+      mark: {type: 'point', clip: true, filled: true, size: 34, fill: measured, opacity: 1},
+      encoding: {x, y, tooltip: tips},
+    },
   ]);
 }

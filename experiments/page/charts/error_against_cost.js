@@ -5,10 +5,16 @@ import {error_chart} from './error_chart.js';
 export function error_against_cost({result, scene, observable, tolerance, unit, labels, winner}) {
   const cells = scene_cells(result, scene);
   return error_chart({
-    rows: error_rows(cells, observable, unit), failures: failure_rows(cells, unit), labels,
-    x: {field: 'cost', title: `cost, ${unit.name} per unit of simulated time`, label_side: 'right'}, y: error_axis(observable),
-    tolerance: tolerance_line(observable, tolerance), legend: {methods: true, orient: 'right', title: 'method'},
-    is_answer: winner ? (row) => row.method === winner.label && row.time_step === winner.best.cell.time_step : null,
+    rows: error_rows(cells, observable, unit),
+    failures: failure_rows(cells, unit),
+    labels,
+    x: {field: 'cost', title: `cost, ${unit.name} per unit of simulated time`, label_side: 'right'},
+    y: error_axis(observable),
+    tolerance: tolerance_line(observable, tolerance),
+    legend: {methods: true, orient: 'right', title: 'method'},
+    is_answer: winner
+      ? (row) => row.method === winner.label && row.time_step === winner.best.cell.time_step
+      : null,
   });
 }
 

@@ -15,7 +15,12 @@ export function error_against_step({result, scene, observable, tolerance, unit, 
   const cells = scene_cells(result, scene);
   if (!cells.length) return null;
   return error_chart({
-    rows: error_rows(cells, observable, unit), failures: failure_rows(cells, unit), labels, legend: {methods: false, orient: 'bottom'},
-    x: step_axis(cells), y: error_axis(observable), tolerance: tolerance_line(observable, tolerance),
+    rows: error_rows(cells, observable, unit),
+    failures: failure_rows(cells, unit),
+    labels,
+    legend: {methods: false, orient: 'bottom'},
+    x: step_axis(cells),
+    y: error_axis(observable),
+    tolerance: tolerance_line(observable, tolerance),
   });
 }

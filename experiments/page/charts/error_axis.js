@@ -7,8 +7,15 @@ const units = {
 };
 
 export function error_axis(observable) {
-  const title = observable === 'equilibrium' ? 'largest of the three equilibrium errors, %' : `error of ${observable_short(observable)}, %`;
-  return {title: units[observable] ?? title, scale: is_relative(observable) ? 100 : 1, size_title: 'error'};
+  const title =
+    observable === 'equilibrium'
+      ? 'largest of the three equilibrium errors, %'
+      : `error of ${observable_short(observable)}, %`;
+  return {
+    title: units[observable] ?? title,
+    scale: is_relative(observable) ? 100 : 1,
+    size_title: 'error',
+  };
 }
 
 export function tolerance_line(observable, tolerance) {

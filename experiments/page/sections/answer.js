@@ -5,14 +5,21 @@ import {deviation, number, observable_short, percent, status_title, with_error} 
 import {method_tag} from '../palette.js';
 
 function published(result, scene, observable, tolerance) {
-  return result.answers?.find((entry) => entry.scene === scene && entry.observable === observable &&
-    Math.abs(entry.tolerance - tolerance) <= 1e-9 * tolerance)?.sentence;
+  return result.answers?.find(
+    (entry) =>
+      entry.scene === scene &&
+      entry.observable === observable &&
+      Math.abs(entry.tolerance - tolerance) <= 1e-9 * tolerance,
+  )?.sentence;
 }
 
 // For tolerances that the result has no sentence for: the same words.
 function composed({result, observable, tolerance}, scene) {
   const {winner, runner_up} = answer(result, scene, observable, tolerance);
-  const what = observable === 'equilibrium' ? 'temperatures and the variance of the internal energy' : `the ${observable.replaceAll('_', ' ')}`;
+  const what =
+    observable === 'equilibrium'
+      ? 'temperatures and the variance of the internal energy'
+      : `the ${observable.replaceAll('_', ' ')}`;
   const aim = `For ${scene}, to have ${what} within ${percent(tolerance)}`;
   if (!winner) return `${aim}: no method and step of this study is shown to be.`;
   const {cell, judgement, cost} = winner.best;
@@ -22,24 +29,32 @@ function composed({result, observable, tolerance}, scene) {
 }
 
 function sentence(context, scene) {
-  return published(context.result, scene, context.observable, context.tolerance) ?? composed(context, scene);
+  return (
+    published(context.result, scene, context.observable, context.tolerance) ??
+    composed(context, scene)
+  );
 }
-
-const count = (entries, noun) => `${entries.length} ${noun}${entries.length === 1 ? '' : 's'}`;
 
 // Why no step of a method passes, from its judged cells.
 function reason(entry, observable, tolerance) {
-  const with_state = (...states) => entry.judged.filter(({judgement}) => states.includes(judgement.state));
-  const numbers = with_state('resolved', 'below_noise').sort((a, b) => a.judgement.upper - b.judgement.upper);
+  const with_state = (...states) =>
+    entry.judged.filter(({judgement}) => states.includes(judgement.state));
+  const numbers = with_state('resolved', 'below_noise').sort(
+    (a, b) => a.judgement.upper - b.judgement.upper,
+  );
   const failed = with_state('failed');
-  if (with_state('not_applicable').length === entry.judged.length) return `not applicable: ${entry.judged[0].judgement.note}`;
+  if (with_state('not_applicable').length === entry.judged.length)
+    return `not applicable: ${entry.judged[0].judgement.note}`;
   if (failed.length === entry.judged.length) return `failed at every step: ${causes(failed)}`;
   if (!numbers.length) return without_numbers(entry, with_state);
-  if (numbers.some(({judgement}) => judgement.upper <= tolerance)) return 'passes, but its cost is not known';
+  if (numbers.some(({judgement}) => judgement.upper <= tolerance))
+    return 'passes, but its cost is not known';
   const {cell, judgement} = numbers[0];
   const at = `${told_apart(judgement.upper, tolerance, observable)} at step ${number(cell.time_step)}`;
-  if (judgement.state === 'below_noise') return `below noise, but not resolved to ${deviation(tolerance, observable)}: could be up to ${at}`;
-  if (judgement.lower > tolerance) return `too wrong at every step: at best ${deviation(judgement.value, observable)}, at step ${number(cell.time_step)}`;
+  if (judgement.state === 'below_noise')
+    return `below noise, but not resolved to ${deviation(tolerance, observable)}: could be up to ${at}`;
+  if (judgement.lower > tolerance)
+    return `too wrong at every step: at best ${deviation(judgement.value, observable)}, at step ${number(cell.time_step)}`;
   return `undecided: ${deviation(judgement.value, observable)} measured, could be up to ${at}`;
 }
 
@@ -66,17 +81,29 @@ function row_of(entry, context, winner) {
   const {observable, tolerance, unit, labels} = context;
   const name = method_tag(entry.label, labels);
   if (!entry.best) {
-    return {attributes: {class: 'none'}, cells: [name, {text: reason(entry, observable, tolerance), colspan: 6, class: 'reason'}]};
+    return {
+      attributes: {class: 'none'},
+      cells: [name, {text: reason(entry, observable, tolerance), colspan: 6, class: 'reason'}],
+    };
   }
   const {cell, judgement, cost} = entry.best;
   const drift = cell.observables.energy_drift;
   const is_winner = entry === winner;
   return {
-    attributes: {class: is_winner ? 'best' : null, 'data-method': cell.method, 'data-step': cell.time_step, 'data-best': is_winner},
+    attributes: {
+      class: is_winner ? 'best' : null,
+      'data-method': cell.method,
+      'data-step': cell.time_step,
+      'data-best': is_winner,
+    },
     cells: [
       element('span', {}, name, is_winner ? element('span', {class: 'badge'}, 'answer') : null),
-      numeric(number(cell.time_step)), numeric(number(cost * unit.factor)), numeric(`${number(cost / winner.best.cost, 2)}×`),
-      numeric(judgement.state === 'below_noise' ? 'below noise' : deviation(judgement.value, observable)),
+      numeric(number(cell.time_step)),
+      numeric(number(cost * unit.factor)),
+      numeric(`${number(cost / winner.best.cost, 2)}×`),
+      numeric(
+        judgement.state === 'below_noise' ? 'below noise' : deviation(judgement.value, observable),
+      ),
       numeric(deviation(judgement.upper, observable)),
       numeric(drift ? with_error(drift.mean, drift.error) : '–'),
     ],
@@ -89,11 +116,36 @@ export function render_answer(context) {
   const {result, scene, observable, tolerance, unit} = context;
   const others = result.scenes.map((entry) => entry.name).filter((name) => name !== scene);
   replace('answer-sentence', sentence(context, scene));
-  replace('other-answers', others.length ? element('ul', {}, others.map((name) => element('li', {}, sentence(context, name)))) : null);
+  replace(
+    'other-answers',
+    others.length
+      ? element(
+          'ul',
+          {},
+          others.map((name) => element('li', {}, sentence(context, name))),
+        )
+      : null,
+  );
   const entries = methods_of(result, scene, observable, tolerance);
   const ranked = entries.filter((entry) => entry.best).sort((a, b) => a.best.cost - b.best.cost);
   const rest = entries.filter((entry) => !entry.best);
-  const head = ['method', 'cheapest step that passes', `cost, ${unit.name} per unit time`, 'relative cost', 'error', 'at worst (95 %)', 'energy drift, kT per particle and unit time'];
-  const caption = `${scene}: ${count(ranked, 'method')} of ${entries.length} keep ${observable_short(observable)} within ${deviation(tolerance, observable)}`;
-  replace('answer-table-place', table('answer-table', caption, head, [...ranked, ...rest].map((entry) => row_of(entry, context, ranked[0]))));
+  const head = [
+    'method',
+    'cheapest step that passes',
+    `cost, ${unit.name} per unit time`,
+    'relative cost',
+    'error',
+    'at worst (95 %)',
+    'energy drift, kT per particle and unit time',
+  ];
+  const caption = `${scene}: ${ranked.length || 'none'} of ${entries.length} methods ${ranked.length > 1 ? 'keep' : 'keeps'} ${observable_short(observable)} within ${deviation(tolerance, observable)}`;
+  replace(
+    'answer-table-place',
+    table(
+      'answer-table',
+      caption,
+      head,
+      [...ranked, ...rest].map((entry) => row_of(entry, context, ranked[0])),
+    ),
+  );
 }

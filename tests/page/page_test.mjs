@@ -1,0 +1,432 @@
+// The result page in headless Chromium, without a network. WRITE_PAGE names the program that writes
+// the page of a result; CHROMIUM the browser, where it is not found by its usual name.
+import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
+import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {pathToFileURL} from 'node:url';
+import {chromium} from 'playwright-core';
+
+const sample = JSON.parse(readFileSync(new URL('sample_result.json', import.meta.url), 'utf8'));
+const folder = mkdtempSync(join(tmpdir(), 'driftless-page-'));
+const flags = [
+  '--no-sandbox',
+  '--disable-gpu',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+];
+let browser;
+
+before(async () => {
+  const executablePath =
+    process.env.CHROMIUM || execFileSync('which', ['chromium'], {encoding: 'utf8'}).trim();
+  browser = await chromium.launch({executablePath, args: flags});
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(folder, {recursive: true, force: true});
+});
+
+let written = 0;
+function page_of(result, change = (html) => html) {
+  const name = join(folder, `${++written}`);
+  writeFileSync(`${name}.json`, JSON.stringify(result));
+  execFileSync(process.env.WRITE_PAGE, [`${name}.json`, `${name}.html`]);
+  writeFileSync(`${name}.html`, change(readFileSync(`${name}.html`, 'utf8')));
+  return pathToFileURL(`${name}.html`).href;
+}
+
+// Opens a page and notes what must not happen: requests, messages on the console, errors.
+async function open(url, patience = 20000) {
+  const context = await browser.newContext({offline: true, viewport: {width: 1180, height: 900}});
+  const page = await context.newPage();
+  const faults = [];
+  page.on(
+    'request',
+    (request) =>
+      request.url() !== url &&
+      !request.url().startsWith('data:') &&
+      faults.push(`request: ${request.url()}`),
+  );
+  page.on(
+    'console',
+    (message) =>
+      ['error', 'warning'].includes(message.type()) && faults.push(`console: ${message.text()}`),
+  );
+  page.on('pageerror', (error) => faults.push(`error: ${error.message}`));
+  await page.goto(url);
+  await ready(page, patience).catch(() => faults.push('the page never became ready'));
+  return {page, faults};
+}
+
+function ready(page, timeout = 20000) {
+  return page.waitForFunction(() => document.body.dataset.state === 'ready', undefined, {timeout});
+}
+
+async function choose(page, id, title) {
+  if (title === (await page.$eval(`#${id}`, (select) => select.selectedOptions[0]?.label))) return;
+  await page.selectOption(`#${id}`, {label: title});
+  await ready(page);
+}
+
+// How many marks each named layer of each chart has: {'chart-cost': {points: 22, ...}, ...}
+function counted_marks(page) {
+  return page.evaluate(() =>
+    Object.fromEntries(
+      [...document.querySelectorAll('.chart')].map((chart) => {
+        const layers = {};
+        for (const group of chart.querySelectorAll('svg g.role-mark')) {
+          const name = [...group.classList]
+            .find((word) => word.endsWith('_marks'))
+            ?.replace('_marks', '');
+          if (name) layers[name] = (layers[name] ?? 0) + group.children.length;
+        }
+        return [chart.id, layers];
+      }),
+    ),
+  );
+}
+
+// What the marks must be, from the result itself.
+const equilibrium = ['kinetic_temperature', 'internal_temperature', 'internal_energy_variance'];
+const cells_of = (result, scene = result.scenes[0].name) =>
+  result.cells.filter((cell) => cell.scene === scene);
+const parts_of = (cell) => equilibrium.map((name) => cell.observables[name]);
+const measured = (cell) =>
+  cell.status === 'ok' && parts_of(cell).every((part) => part.status === 'ok' && part.deviation);
+const upper_of = (cell) => Math.max(...parts_of(cell).map((part) => part.deviation.upper));
+const failed = (cell) => !['ok', 'not_applicable'].includes(cell.status);
+
+function expected_marks(result) {
+  const cells = cells_of(result);
+  const shown = cells.filter(measured);
+  const hollow = shown.filter((cell) =>
+    parts_of(cell).every((part) => part.deviation.below_noise),
+  ).length;
+  const drifting = cells.filter(
+    (cell) => cell.status === 'ok' && cell.observables.energy_drift.deviation.upper > 1e-8,
+  ).length;
+  const passing = shown.filter((cell) => upper_of(cell) <= 0.01).length;
+  const methods = new Set(shown.map((cell) => cell.method)).size;
+  return {
+    'chart-cost': {
+      points: shown.length,
+      intervals: shown.length,
+      grounds: hollow,
+      lines: methods,
+      tolerance: 1,
+      answer_ring: 1,
+      failures: cells.filter((cell) => failed(cell) && cell.cost.core_seconds_per_time).length,
+    },
+    'chart-step': {
+      points: shown.length,
+      intervals: shown.length,
+      grounds: hollow,
+      lines: methods,
+      tolerance: 1,
+      failures: cells.filter(failed).length,
+    },
+    'chart-map': {
+      squares: shown.length,
+      failed_squares: cells.length - shown.length,
+      texts: cells.length,
+      passing,
+    },
+    'chart-drift': {points: drifting, intervals: drifting},
+    'chart-walk': {points: drifting, intervals: drifting},
+    'chart-trace': {
+      traces: cells.filter((cell) => cell.time_step === 0.1 && cell.energy_trace).length,
+      zero: 1,
+    },
+    'chart-internal-energy': {points: 24, intervals: 24, exact: 1},
+    'chart-internal-energy-difference': {points: 24, intervals: 24, zero: 1},
+    'chart-momentum': {points: 24, intervals: 24, exact: 1},
+    'chart-momentum-difference': {points: 24, intervals: 24, zero: 1},
+    'chart-radial': {points: 24, intervals: 24, exact: 1},
+    'chart-radial-difference': {points: 24, intervals: 24, zero: 1},
+  };
+}
+
+function differing_marks(counted, expected) {
+  return Object.entries(expected).flatMap(([chart, layers]) =>
+    Object.entries(layers)
+      .filter(([layer, count]) => (counted[chart]?.[layer] ?? 0) !== count)
+      .map(
+        ([layer, count]) =>
+          `marks: ${chart} has ${counted[chart]?.[layer] ?? 0} ${layer}, not ${count}`,
+      ),
+  );
+}
+
+// All faults of a page that is to show `result`.
+async function inspect(url, result, patience) {
+  const {page, faults} = await open(url, patience);
+  const found = [...faults, ...differing_marks(await counted_marks(page), expected_marks(result))];
+  await page.context().close();
+  return found;
+}
+
+// What the page answers now: the row that it marks.
+function shown_answer(page) {
+  return page.evaluate(() => {
+    const rows = [...document.querySelectorAll('#answer-table tr[data-method]')];
+    const entry = (row) =>
+      row
+        ? {method: row.querySelector('.method').textContent, time_step: Number(row.dataset.step)}
+        : null;
+    return {
+      marked: document.querySelectorAll('#answer-table tr[data-best]').length,
+      best: entry(rows[0]),
+      next: entry(rows[1]),
+    };
+  });
+}
+
+test('the sample is drawn whole, without a network and without a word on the console', async () => {
+  assert.deepEqual(await inspect(page_of(sample), sample), []);
+});
+
+test('each chart says what it shows to those who cannot see it', async () => {
+  const {page} = await open(page_of(sample));
+  const names = await page.$$eval('.chart', (charts) =>
+    charts.map((chart) => chart.getAttribute('aria-label')),
+  );
+  assert.equal(new Set(names).size, names.length);
+  assert.ok(
+    names.every((name) => name.length > 20),
+    names.join('\n'),
+  );
+  await page.context().close();
+});
+
+test('points below noise are drawn hollow and named in the legend', async () => {
+  const {page} = await open(page_of(sample));
+  const drawn = await page.$$eval('#chart-cost .points_marks path', (paths) =>
+    paths.map((path) => path.getAttribute('fill-opacity')),
+  );
+  const hollow = expected_marks(sample)['chart-cost'].grounds;
+  assert.ok(hollow > 0);
+  assert.equal(drawn.filter((opacity) => opacity === '0').length, hollow);
+  assert.match(await page.textContent('#chart-cost .role-legend'), /below noise/);
+  await page.context().close();
+});
+
+test('every mark and bar stays inside its chart', async () => {
+  const {page} = await open(page_of(sample));
+  const outside = await page.evaluate(() =>
+    [...document.querySelectorAll('.chart svg')].flatMap((svg) => {
+      const frame = svg.getBoundingClientRect();
+      return [
+        ...svg.querySelectorAll(
+          '.points_marks path, .intervals_marks line, .failures_marks path, .role-mark text',
+        ),
+      ]
+        .filter((mark) => {
+          const box = mark.getBoundingClientRect();
+          return (
+            box.left < frame.left - 1 ||
+            box.right > frame.right + 1 ||
+            box.top < frame.top - 1 ||
+            box.bottom > frame.bottom + 1
+          );
+        })
+        .map((mark) => `${svg.closest('.chart').id}: ${mark.parentNode.getAttribute('class')}`);
+    }),
+  );
+  assert.deepEqual(outside, []);
+  await page.context().close();
+});
+
+const tolerance_titles = {
+  0.001: '0.1 %',
+  0.002: '0.2 %',
+  0.005: '0.5 %',
+  0.01: '1 %',
+  0.02: '2 %',
+  0.05: '5 %',
+  0.1: '10 %',
+};
+const observable_titles = {
+  equilibrium: 'equilibrium (the worst of the next three)',
+  kinetic_temperature: 'kinetic temperature',
+  internal_energy_variance: 'variance of internal energy',
+  energy_drift: 'energy drift',
+};
+
+test('for every scene, observable and tolerance the page answers as the result does', async () => {
+  const {page, faults} = await open(page_of(sample));
+  const seen = new Set();
+  for (const entry of sample.answers) {
+    await choose(page, 'scene', entry.scene);
+    await choose(page, 'observable', observable_titles[entry.observable]);
+    await choose(page, 'tolerance', tolerance_titles[entry.tolerance]);
+    const what = `${entry.scene}, ${entry.observable}, ${entry.tolerance}`;
+    const {marked, best, next} = await shown_answer(page);
+    assert.equal(marked, entry.method ? 1 : 0, what);
+    assert.deepEqual(
+      best,
+      entry.method && {method: entry.method, time_step: entry.time_step},
+      what,
+    );
+    assert.deepEqual(
+      next,
+      entry.runner_up && {method: entry.runner_up.method, time_step: entry.runner_up.time_step},
+      what,
+    );
+    assert.equal(await page.textContent('#answer-sentence'), entry.sentence, what);
+    seen.add(JSON.stringify(best));
+  }
+  assert.ok(seen.size > 4, 'the choosers change the answer');
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
+
+test('without a sentence in the result the page words the same answer itself', async () => {
+  const {page} = await open(page_of({...sample, answers: []}));
+  for (const entry of sample.answers.filter(
+    ({observable, scene}) => observable === 'equilibrium' && scene === sample.scenes[1].name,
+  )) {
+    await choose(page, 'scene', entry.scene);
+    await choose(page, 'tolerance', tolerance_titles[entry.tolerance]);
+    assert.equal(await page.textContent('#answer-sentence'), entry.sentence);
+  }
+  await page.context().close();
+});
+
+test('the table says why a method has no step that passes', async () => {
+  const {page} = await open(page_of(sample));
+  assert.match(
+    await page.textContent('#answer-table'),
+    /not applicable: espanol is built for the noise closure/,
+  );
+  await choose(page, 'tolerance', '0.1 %');
+  assert.match(await page.textContent('#answer-table'), /below noise, but not resolved to 0\.1 %/);
+  await choose(page, 'observable', 'skewness of internal energy');
+  await choose(page, 'scene', sample.scenes[1].name);
+  assert.match(
+    await page.textContent('#answer-table'),
+    /not resolved \(skewness of internal energy\): needs 20 relaxation times/,
+  );
+  await page.context().close();
+});
+
+test('steps and methods of the detail charts can be chosen', async () => {
+  const {page, faults} = await open(page_of(sample));
+  await choose(page, 'trace-step', '0.01');
+  assert.match(await page.getAttribute('#chart-trace', 'aria-label'), /step 0\.01/);
+  await choose(page, 'law-method', 'avalos-mackie-implicit');
+  await choose(page, 'law-step', '0.2');
+  assert.match(
+    await page.getAttribute('#chart-momentum', 'aria-label'),
+    /avalos-mackie-implicit at step 0\.2/,
+  );
+  assert.match(await page.textContent('#law-note'), /survivors/);
+  assert.equal(await page.isVisible('#law-radial'), false);
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
+
+test('failures, parameters and the command are there', async () => {
+  const {page} = await open(page_of(sample));
+  const failures = cells_of(sample).flatMap((cell) => cell.failures).length;
+  assert.equal(await page.locator('#failures-table tbody tr').count(), failures);
+  assert.equal(await page.locator('#agreement-table tbody tr').count(), 8);
+  assert.match(await page.textContent('#scenes-table'), /friction closure\s*frictionnoise/);
+  assert.equal(await page.textContent('#command'), sample.provenance.command);
+  await page.context().close();
+});
+
+function without_ok_cells() {
+  const cells = sample.cells.map((cell) => ({
+    ...cell,
+    status: cell.status === 'not_applicable' ? cell.status : 'unstable',
+    observables: {},
+    curves: {},
+    energy_trace: undefined,
+    off_equilibrium: undefined,
+    failures: [{replica: 0, cause: 'momentum is not finite', step: 3, time: 0.1}],
+    cost: {...cell.cost, core_seconds_per_time: null},
+  }));
+  return {...sample, cells, orders: [], answers: []};
+}
+
+test('a result without one good cell still makes a page', async () => {
+  const {page, faults} = await open(page_of(without_ok_cells()));
+  assert.deepEqual(faults, []);
+  assert.match(
+    await page.textContent('#answer-sentence'),
+    /no method and step of this study is shown to be/,
+  );
+  assert.match(await page.textContent('#answer-table'), /failed at every step: unstable/);
+  const marks = await counted_marks(page);
+  assert.equal(marks['chart-map'].failed_squares, cells_of(sample).length);
+  assert.equal(marks['chart-step'].failures, 25);
+  assert.equal(await page.getAttribute('#chart-trace', 'data-state'), 'empty');
+  await page.context().close();
+});
+
+test('names in a result are text, never markup', async () => {
+  const name = '</script><img src=x onerror="document.title=1"> & <b>bold</b>';
+  const {page, faults} = await open(page_of({...sample, name}));
+  assert.equal(await page.textContent('#title'), name);
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
+
+// Tests of the test: what it must not overlook.
+test('a script error is noticed', async () => {
+  const found = await inspect(
+    page_of(sample, (html) =>
+      html.replace(
+        /<\/body>\s*<\/html>\s*$/,
+        '<script>throw new Error("planted")</script></body></html>',
+      ),
+    ),
+    sample,
+  );
+  assert.deepEqual(found, ['error: planted']);
+});
+
+test('a way out to the network is noticed', async () => {
+  const found = await inspect(
+    page_of(sample, (html) =>
+      html.replace(
+        /<\/body>\s*<\/html>\s*$/,
+        '<img src="http://127.0.0.1:9/planted.png"></body></html>',
+      ),
+    ),
+    sample,
+  );
+  assert.ok(
+    found.length > 0 && found.every((fault) => fault.includes('planted.png')),
+    found.join('\n'),
+  );
+});
+
+test('a broken field of a chart is noticed', async () => {
+  const broken = structuredClone(sample);
+  for (const cell of broken.cells) if (cell.curves.momentum) delete cell.curves.momentum.density;
+  const found = await inspect(page_of(broken), sample, 3000);
+  assert.ok(
+    found.some((fault) => fault.startsWith('error:')),
+    found.join('\n'),
+  );
+});
+
+test('a chart that lost marks is noticed', async () => {
+  const cells = sample.cells.filter(
+    (cell) => !(cell.method === 'shardlow-s1' && cell.time_step === 0.05),
+  );
+  const found = await inspect(page_of({...sample, cells}), sample);
+  assert.ok(
+    found.some((fault) => fault.startsWith('marks: chart-cost')) &&
+      found.some((fault) => fault.startsWith('marks: chart-map')),
+    found.join('\n'),
+  );
+});
