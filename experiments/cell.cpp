@@ -63,6 +63,9 @@ json observable_json(const Observed& observed, const std::string& unresolved) {
     if (observed.exact->error > 0) entry["exact_error"] = observed.exact->error;
     entry["deviation"] = deviation(observed);
   }
+  if (const auto& limits = observed.interval) {
+    entry["interval"] = {limits->first, limits->second};
+  }
   if (spec.of_internal_energy && !unresolved.empty()) {
     entry["status"] = "not_resolved";
     entry["note"] = unresolved;

@@ -265,7 +265,8 @@ CellObservables evaluate(const PreparedScene& prepared, const std::vector<Record
   const auto& walk = cell.drift.walk;
   cell.observed.push_back({"energy_walk",
                            {walk.value * n, walk.error * n, walk.effective_increments, false},
-                           std::nullopt});
+                           std::nullopt,
+                           {{walk.lower * n, walk.upper * n}}});
   cell.observed.push_back({"momentum_error", largest_momentum_error(records), std::nullopt});
   cell.radial_distribution = radial_distribution(prepared, records);
   compare_off_equilibrium(prepared, records, replicas, cell);

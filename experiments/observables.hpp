@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "experiments/distribution_distance.hpp"
@@ -71,6 +72,7 @@ struct Observed {
   std::string_view name;
   Estimate value;
   std::optional<Reference> exact;
+  std::optional<std::pair<double, double>> interval = {};  ///< 95 %, where it is not symmetric
 };
 
 /// Everything that the records of a cell's surviving replicas give.

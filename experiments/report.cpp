@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 #include "experiments/answers.hpp"
@@ -99,6 +100,25 @@ std::string map_of(const json& result, const std::string& scene) {
   return table(head, rows);
 }
 
+/// "failed: 5 of 25 cells (negative_internal_energy 5)".
+std::string failures_of(const json& result, const std::string& scene) {
+  std::map<std::string, int> causes;
+  int failed = 0, run = 0;
+  for (const auto& cell : result["cells"]) {
+    if (cell["scene"] != scene || cell["status"] == "not_applicable") continue;
+    ++run;
+    if (cell["status"] == "ok") continue;
+    ++failed;
+    ++causes[cell["status"]];
+  }
+  std::string text = fmt::format("Failed: {} of {} cells", failed, run);
+  std::string list;
+  for (const auto& [cause, count] : causes) {
+    list += fmt::format("{}{} {}", list.empty() ? "" : ", ", cause, count);
+  }
+  return list.empty() ? text : fmt::format("{} ({})", text, list);
+}
+
 }  // namespace
 
 std::string summary(const json& result) {
@@ -117,6 +137,7 @@ std::string summary(const json& result) {
           answers + "\n";
     }
     text += "Bound of the worst of these errors, by method and step:\n\n" + map_of(result, name);
+    text += "\n" + failures_of(result, name) + ".\n";
   }
   text += fmt::format(
       "\nMade by `{}`, driftless {} ({}), {}, {} threads, {}.\n",
