@@ -785,6 +785,13 @@ json sample_result() {
              {"resolves_internal_energy", false},
              {"energy_per_particle", 56.4},
              {"note", "a note"}}}},
+          {"methods",
+           {{{"name", "shardlow-s1"},
+             {"title", "a title"},
+             {"reference", "a paper"},
+             {"conserves", "momentum"},
+             {"consistent", true},
+             {"galilean", true}}}},
           {"cells",
            {{{"scene", "mackie-1999"},
              {"method", "shardlow-s1"},
@@ -835,6 +842,7 @@ json sample_result() {
              {"cost", nullptr},
              {"upper", nullptr},
              {"runner_up", nullptr},
+             {"cheaper_inconsistent", nullptr},
              {"sentence", "No method."}}}}};
 }
 

@@ -51,13 +51,21 @@ export function passes(judgement, tolerance) {
   return judgement.upper !== undefined && judgement.upper <= tolerance;
 }
 
+// Whether a method claims the model as its limit; one that the result does not list does.
+function is_consistent(result, method) {
+  return result.methods?.find(({name}) => name === method)?.consistent ?? true;
+}
+
 // One entry for each method of the scene, in the file's order: its judged cells and, of those that
 // pass, the cheapest (`best`, null where none passes with a known cost).
 export function methods_of(result, scene, observable, tolerance) {
   const entries = new Map();
   for (const cell of result.cells.filter((candidate) => candidate.scene === scene)) {
     const label = method_label(cell);
-    if (!entries.has(label)) entries.set(label, {label, judged: [], best: null});
+    if (!entries.has(label)) {
+      const consistent = is_consistent(result, cell.method);
+      entries.set(label, {label, consistent, judged: [], best: null});
+    }
     const entry = entries.get(label);
     const judged = {cell, judgement: judge(cell, observable), cost: cost_of(cell)};
     entry.judged.push(judged);
@@ -67,10 +75,19 @@ export function methods_of(result, scene, observable, tolerance) {
   return [...entries.values()];
 }
 
-// The cheapest passing cell of the scene and the next method's, each null where there is none.
-export function answer(result, scene, observable, tolerance) {
-  const ranked = methods_of(result, scene, observable, tolerance)
+// The entries with a passing cell, cheapest first; those whose limit is not the model come last.
+export function ranked(entries) {
+  return entries
     .filter((entry) => entry.best)
-    .sort((a, b) => a.best.cost - b.best.cost);
-  return {winner: ranked[0] ?? null, runner_up: ranked[1] ?? null};
+    .sort((a, b) => b.consistent - a.consistent || a.best.cost - b.best.cost);
+}
+
+// The cheapest method whose limit is the model, the next of these, and the cheapest method of
+// another limit if that is cheaper than both; each null where there is none.
+export function answer(result, scene, observable, tolerance) {
+  const passing = ranked(methods_of(result, scene, observable, tolerance));
+  const [winner = null, runner_up = null] = passing.filter((entry) => entry.consistent);
+  const other = passing.find((entry) => !entry.consistent);
+  const cheaper = other && (!winner || other.best.cost < winner.best.cost);
+  return {winner, runner_up, cheaper_inconsistent: cheaper ? other : null};
 }

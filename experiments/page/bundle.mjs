@@ -71,7 +71,7 @@ function cpp_array(name, text) {
   const pieces = [];
   for (let start = 0; start < text.length; start += longest_literal)
     pieces.push(`    R"driftless(${text.slice(start, start + longest_literal)})driftless"`);
-  return `constexpr std::string_view ${name}[] = {\n${pieces.join(',\n')}};\n`;
+  return `const std::string_view ${name}[] = {\n${pieces.join(',\n')}};\n`;
 }
 
 function cpp_source(page) {

@@ -24,7 +24,7 @@ const shared = {result, labels, unit: cost_unit(result)};
 const state = {
   scene: result.scenes[0]?.name,
   observable: 'equilibrium',
-  tolerance: 0.01,
+  tolerance: 0.05,
   trace_step: null,
   law_method: null,
   law_step: null,

@@ -20,6 +20,8 @@ const shape = 51;
 const replicas = 4;
 
 // order and size of the error at step 0.1, core-seconds per step, step from which it fails, and how.
+// The limit of this one is not the model: it is named beside an answer, never the answer.
+const inconsistent = 'isoenergetic-verlet';
 const methods = [
   {
     name: 'averaged-drift',
@@ -251,7 +253,7 @@ const normal_law = (variance) => (p) =>
 function curves_of(method, time_step) {
   const bias = method.size * (time_step / 0.1) ** method.order;
   const radial =
-    method.name === 'shardlow-s2'
+    method.name.startsWith('shardlow')
       ? {
           radial_distribution: curve(
             0,
@@ -422,7 +424,12 @@ function answer_of(cells, scene, observable, tolerance) {
       upper: upper_of(cell, observable),
     }))
     .sort((a, b) => a.cost - b.cost);
-  const best = passing[0];
+  const consistent = passing.filter(({method}) => method !== inconsistent);
+  const best = consistent[0] ?? null;
+  const other = passing[0]?.method === inconsistent ? passing[0] : null;
+  const beside = other
+    ? `; ${other.method} at step ${other.time_step} passes for ${rounded(other.cost, 3)}, but its limit is not the model`
+    : '';
   const what =
     observable === 'equilibrium'
       ? 'temperatures and the variance of the internal energy'
@@ -438,10 +445,11 @@ function answer_of(cells, scene, observable, tolerance) {
       cost: null,
       upper: null,
       runner_up: null,
-      sentence: `${aim}: no method and step of this study is shown to be.`,
+      cheaper_inconsistent: other,
+      sentence: `${aim}: no method and step of this study is shown to be${beside}.`,
     };
   }
-  const runner_up = passing.find((entry) => entry.method !== best.method) ?? null;
+  const runner_up = consistent.find((entry) => entry.method !== best.method) ?? null;
   const next = runner_up
     ? `; next ${runner_up.method} at step ${runner_up.time_step}, ${rounded(runner_up.cost / best.cost, 2)} times the cost`
     : '';
@@ -451,7 +459,8 @@ function answer_of(cells, scene, observable, tolerance) {
     tolerance,
     ...best,
     runner_up,
-    sentence: `${aim}: ${best.method} at step ${best.time_step}, ${rounded(best.cost, 3)} core-seconds per unit time, wrong by at most ${rounded(best.upper * 100, 2)} %${next}.`,
+    cheaper_inconsistent: other,
+    sentence: `${aim}: ${best.method} at step ${best.time_step}, ${rounded(best.cost, 3)} core-seconds per unit time, wrong by at most ${rounded(best.upper * 100, 2)} %${next}${beside}.`,
   };
 }
 
@@ -519,6 +528,14 @@ const result = {
   },
   study,
   scenes,
+  methods: methods.map(({name}) => ({
+    name,
+    title: `The method ${name}`,
+    reference: 'A Journal 1, 1 (1999)',
+    conserves: 'momentum',
+    consistent: name !== inconsistent,
+    galilean: name !== inconsistent,
+  })),
   cells,
   orders: orders_of(cells),
   answers: scenes.flatMap((scene) =>

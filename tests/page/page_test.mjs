@@ -68,6 +68,25 @@ test('every mark and bar stays inside its chart', async () => {
   await page.context().close();
 });
 
+test('every interval covers its point, also where it reaches zero', async () => {
+  const {page} = await open(page_of(sample));
+  const uncovered = await page.evaluate(() =>
+    ['chart-cost', 'chart-step', 'chart-drift', 'chart-walk'].flatMap((id) => {
+      const middle = (mark) => {
+        const box = mark.getBoundingClientRect();
+        return (box.top + box.bottom) / 2;
+      };
+      const points = [...document.querySelectorAll(`#${id} .points_marks path`)];
+      return [...document.querySelectorAll(`#${id} .intervals_marks line`)]
+        .map((bar, index) => [bar.getBoundingClientRect(), middle(points[index])])
+        .filter(([box, at]) => !(box.top <= at + 1 && at - 1 <= box.bottom))
+        .map(([box, at]) => `${id}: ${at} is not within ${box.top} .. ${box.bottom}`);
+    }),
+  );
+  assert.deepEqual(uncovered, []);
+  await page.context().close();
+});
+
 const tolerance_titles = {
   0.001: '0.1 %',
   0.002: '0.2 %',

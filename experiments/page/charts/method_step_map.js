@@ -56,7 +56,7 @@ export function method_step_map({cells, observable, tolerance, labels}) {
   const domain = uppers.length
     ? [Math.min(...uppers), Math.max(Math.max(...uppers), Math.min(...uppers) * 1.01)]
     : [0.01, 0.1];
-  const dark = Math.sqrt(domain[0] * domain[1]) * 1.2;
+  const dark = Math.sqrt(domain[0] * domain[1]) * 1.6;
   const tips = [
     {field: 'method', title: 'method'},
     {field: 'step', title: 'time step'},

@@ -1,5 +1,5 @@
 // The answer in a sentence, and the table of every method's cheapest step that passes.
-import {answer, methods_of} from '../answer.js';
+import {answer, methods_of, ranked} from '../answer.js';
 import {element, replace, table} from '../dom.js';
 import {deviation, number, observable_short, percent, status_title, with_error} from '../format.js';
 import {method_tag} from '../palette.js';
@@ -15,17 +15,25 @@ function published(result, scene, observable, tolerance) {
 
 // For tolerances that the result has no sentence for: the same words.
 function composed({result, observable, tolerance}, scene) {
-  const {winner, runner_up} = answer(result, scene, observable, tolerance);
+  const {winner, runner_up, cheaper_inconsistent} = answer(result, scene, observable, tolerance);
   const what =
     observable === 'equilibrium'
       ? 'temperatures and the variance of the internal energy'
       : `the ${observable.replaceAll('_', ' ')}`;
   const aim = `For ${scene}, to have ${what} within ${percent(tolerance)}`;
-  if (!winner) return `${aim}: no method and step of this study is shown to be.`;
-  const {cell, judgement, cost} = winner.best;
-  const first = `${aim}: ${winner.label} at step ${number(cell.time_step)}, ${number(cost)} core-seconds per unit time, wrong by at most ${percent(judgement.upper)}`;
-  if (!runner_up) return `${first}.`;
-  return `${first}; next ${runner_up.label} at step ${number(runner_up.best.cell.time_step)}, ${number(runner_up.best.cost / cost, 2)} times the cost.`;
+  const at = ({label, best}) => `${label} at step ${number(best.cell.time_step)}`;
+  const parts = ['no method and step of this study is shown to be'];
+  if (winner)
+    parts[0] = `${at(winner)}, ${number(winner.best.cost)} core-seconds per unit time, wrong by at most ${percent(winner.best.judgement.upper)}`;
+  if (runner_up)
+    parts.push(
+      `next ${at(runner_up)}, ${number(runner_up.best.cost / winner.best.cost, 2)} times the cost`,
+    );
+  if (cheaper_inconsistent)
+    parts.push(
+      `${at(cheaper_inconsistent)} passes for ${number(cheaper_inconsistent.best.cost)}, but its limit is not the model`,
+    );
+  return `${aim}: ${parts.join('; ')}.`;
 }
 
 function sentence(context, scene) {
@@ -95,12 +103,13 @@ function row_of(entry, context, winner) {
       'data-method': cell.method,
       'data-step': cell.time_step,
       'data-best': is_winner,
+      'data-consistent': entry.consistent,
     },
     cells: [
-      element('span', {}, name, is_winner ? element('span', {class: 'badge'}, 'answer') : null),
+      element('span', {}, name, badge(entry, is_winner)),
       numeric(number(cell.time_step)),
       numeric(number(cost * unit.factor)),
-      numeric(`${number(cost / winner.best.cost, 2)}×`),
+      numeric(winner ? `${number(cost / winner.best.cost, 2)}×` : '–'),
       numeric(
         judgement.state === 'below_noise' ? 'below noise' : deviation(judgement.value, observable),
       ),
@@ -108,6 +117,12 @@ function row_of(entry, context, winner) {
       numeric(drift ? with_error(drift.mean, drift.error) : '–'),
     ],
   };
+}
+
+function badge(entry, is_winner) {
+  if (is_winner) return element('span', {class: 'badge'}, 'answer');
+  if (entry.consistent) return null;
+  return element('span', {class: 'badge warning'}, 'its limit is not the model');
 }
 
 const numeric = (text) => ({text, class: 'number'});
@@ -127,7 +142,8 @@ export function render_answer(context) {
       : null,
   );
   const entries = methods_of(result, scene, observable, tolerance);
-  const ranked = entries.filter((entry) => entry.best).sort((a, b) => a.best.cost - b.best.cost);
+  const passing = ranked(entries);
+  const winner = passing.find((entry) => entry.consistent) ?? null;
   const rest = entries.filter((entry) => !entry.best);
   const head = [
     'method',
@@ -138,14 +154,14 @@ export function render_answer(context) {
     'at worst (95 %)',
     'energy drift, kT per particle and unit time',
   ];
-  const caption = `${scene}: ${ranked.length || 'none'} of ${entries.length} methods ${ranked.length > 1 ? 'keep' : 'keeps'} ${observable_short(observable)} within ${deviation(tolerance, observable)}`;
+  const caption = `${scene}: ${passing.length || 'none'} of ${entries.length} methods ${passing.length > 1 ? 'keep' : 'keeps'} ${observable_short(observable)} within ${deviation(tolerance, observable)}`;
   replace(
     'answer-table-place',
     table(
       'answer-table',
       caption,
       head,
-      [...ranked, ...rest].map((entry) => row_of(entry, context, ranked[0])),
+      [...passing, ...rest].map((entry) => row_of(entry, context, winner)),
     ),
   );
 }

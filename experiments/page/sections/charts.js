@@ -37,9 +37,11 @@ export function draw_errors(now) {
     method_step_map({...now, cells: scene_cells(now.result, now.scene)}),
     `Map of the error by method and time step: ${what}`,
   );
-  const without = failures_without_cost(now).map(
-    (row) => `${row.method} at step ${row.step_text} (${row.status_text})`,
-  );
+  const uncosted = failures_without_cost(now);
+  const without = [...new Set(uncosted.map((row) => row.method))].map((method) => {
+    const steps = uncosted.filter((row) => row.method === method).map((row) => row.step_text);
+    return `${method} at step ${steps.join(', ')}`;
+  });
   replace(
     'cost-note',
     without.length
