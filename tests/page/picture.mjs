@@ -18,5 +18,5 @@ await page.goto(pathToFileURL(resolve(page_file)).href);
 await page.waitForSelector('#chart-cost svg');
 const chart = await page.locator('#chart-cost').boundingBox();
 const height = Math.ceil(chart.y + chart.height + 20);
-await page.screenshot({path: picture_file, clip: {x: 0, y: 0, width: 1180, height}});
+await page.screenshot({path: picture_file, fullPage: true, clip: {x: 0, y: 0, width: 1180, height}});
 await browser.close();
