@@ -179,9 +179,15 @@ void Campaign::run_cells() {
   std::stable_sort(runs.begin(), runs.end(), [&](const auto& a, const auto& b) {
     return predicted_cost(*a.first) > predicted_cost(*b.first);
   });
-  Progress progress(cells_.size(), cost, options_.quiet);
-  progress.cells_resumed(static_cast<std::size_t>(std::count_if(
-      cells_.begin(), cells_.end(), [](const auto& cell) { return !cell->record.is_null(); })));
+  const auto count = [&](auto&& which) {
+    return static_cast<std::size_t>(std::count_if(cells_.begin(), cells_.end(), which));
+  };
+  const auto refused = count([](const auto& cell) {
+    return !cell->record.is_null() && cell->record["status"] == "not_applicable";
+  });
+  const auto finished = count([](const auto& cell) { return !cell->record.is_null(); });
+  Progress progress(cells_.size() - refused, cost, options_.quiet);
+  progress.cells_resumed(finished - refused);
   parallel(runs.size(), threads_,
            [&](std::size_t n) { run_one(*runs[n].first, runs[n].second, progress); });
 }

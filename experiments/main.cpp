@@ -9,6 +9,7 @@
 #include "experiments/observables.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/report.hpp"
+#include "experiments/scene_keys.hpp"
 #include "experiments/text_file.hpp"
 
 namespace {
@@ -47,11 +48,21 @@ void print_methods() {
 }
 
 void print_scenes(bool as_json) {
+  if (as_json) {
+    auto all = nlohmann::json::array();
+    for (const auto& preset : presets()) all.push_back(to_json(preset.scene));
+    fmt::print("{}\n", all.dump(2));
+    return;
+  }
   for (const auto& preset : presets()) {
-    if (!as_json) {
-      fmt::print("{}\n  {}\n  source: {}\n", preset.name, preset.title, preset.source);
+    fmt::print("{}\n  {}\n  source: {}\n", preset.name, preset.title, preset.source);
+    const auto values = scene_parameters(preset.scene);
+    for (const auto& key : scene_keys()) {
+      const std::string name(key.name);
+      if (!values.contains(name)) continue;
+      fmt::print("  {:<24} {:<24} {} ({})\n", name, values[name].dump(), key.meaning,
+                 key.rule.allowed());
     }
-    fmt::print("{}\n", to_json(preset.scene).dump(2));
   }
 }
 
