@@ -140,7 +140,8 @@ json deviation(const Observed& observed) {
     const auto root = [](double square) { return std::sqrt(std::max(0.0, square)); };
     centre = root(observed.value.mean);
     lower = root(observed.value.mean - interval * error);
-    upper = root(observed.value.mean + interval * error);
+    // The unbiased square may be negative; what it may hide is counted from zero.
+    upper = root(std::max(0.0, observed.value.mean) + interval * error);
   } else {
     const double scale = observed.exact->value != 0 ? std::abs(observed.exact->value) : 1;
     centre = std::abs(observed.value.mean - observed.exact->value) / scale;
