@@ -17,6 +17,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double tolerances[] = {0.01, 0.02, 0.05};
+constexpr double rounding = 1e-12;  // a deviation below it has no order
 const std::vector<std::string> equilibrium_parts = {"kinetic_temperature", "internal_temperature",
                                                     "internal_energy_variance"};
 
@@ -39,24 +40,16 @@ std::string label(const json& cell) {
   return text;
 }
 
-/// Whether a method claims the model as its limit; one that the result does not list does.
-bool is_consistent(const json& result, const std::string& method) {
-  for (const auto& record : result["methods"]) {
-    if (record["name"] == method) return record["consistent"];
-  }
-  return true;
-}
-
 /// Each method's cheapest passing cell, cheapest first.
-std::vector<Candidate> passing(const json& result, const std::string& scene,
+std::vector<Candidate> passing(const json& cells, const std::string& scene,
                                const std::string& observable, double tolerance) {
   std::map<std::string, Candidate> cheapest;
-  for (const auto& cell : result["cells"]) {
+  for (const auto& cell : cells) {
     if (cell["scene"] != scene || !cell["cost"]["core_seconds_per_time"].is_number()) continue;
     const json upper = passing_bound(cell, observable);
     if (!upper.is_number() || upper.get<double>() > tolerance) continue;
     const Candidate candidate{label(cell), cell["time_step"], cell["cost"]["core_seconds_per_time"],
-                              upper, is_consistent(result, cell["method"])};
+                              upper, cell["consistent"]};
     const auto [known, added] = cheapest.emplace(candidate.method, candidate);
     if (!added && candidate.cost < known->second.cost) known->second = candidate;
   }
@@ -118,9 +111,9 @@ std::string sentence(const std::string& scene, const std::string& observable, do
   return text + ".";
 }
 
-json answer(const json& result, const std::string& scene, const std::string& observable,
+json answer(const json& cells, const std::string& scene, const std::string& observable,
             double tolerance) {
-  const Ranking ranking(passing(result, scene, observable, tolerance));
+  const Ranking ranking(passing(cells, scene, observable, tolerance));
   json entry = {{"scene", scene},
                 {"observable", observable},
                 {"tolerance", tolerance},
@@ -143,6 +136,11 @@ std::vector<std::string> names_of(const json& records) {
   std::vector<std::string> names;
   for (const auto& record : records) names.push_back(record["name"]);
   return names;
+}
+
+/// A tolerance in percent means little for a drift or the distance of two distributions.
+bool is_relative(std::string_view name) {
+  return name != "energy_drift" && !name.ends_with("_distance");
 }
 
 /// The observables that some cell of a scene has a deviation for, in the order of their list.
@@ -174,8 +172,9 @@ json orders_of(const json& cells, const std::string& scene, const std::string& o
     const auto& entry = observables[observable];
     if (!entry.contains("deviation") || entry["status"] != "ok") continue;
     const auto& deviation = entry["deviation"];
-    const double value = deviation["value"], upper = deviation["upper"];
-    deviations[label(cell)].push_back({cell["time_step"], value, (upper - value) / 1.96});
+    const double value = deviation["value"], lower = deviation["lower"], upper = deviation["upper"];
+    if (deviation["below_noise"] || value < rounding) continue;
+    deviations[label(cell)].push_back({cell["time_step"], value, (upper - lower) / (2 * 1.96)});
   }
   json orders = json::array();
   for (const auto& [method, points] : deviations) {
@@ -220,8 +219,9 @@ void add_answers(json& result) {
       for (auto& order : orders_of(result["cells"], scene, observable)) {
         result["orders"].push_back(std::move(order));
       }
+      if (!is_relative(observable)) continue;
       for (const double tolerance : tolerances) {
-        result["answers"].push_back(answer(result, scene, observable, tolerance));
+        result["answers"].push_back(answer(result["cells"], scene, observable, tolerance));
       }
     }
   }

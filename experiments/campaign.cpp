@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <memory>
 #include <mutex>
-#include <numeric>
+#include <set>
 #include <thread>
 
 #include "experiments/answers.hpp"
@@ -225,18 +226,22 @@ json Campaign::scene_records() const {
   json scenes = json::array();
   for (const auto& prepared : prepared_) {
     const double relaxation = prepared->relaxation();
-    const bool resolves = resolves_internal_energy(*prepared, study_);
+    const double kinetic = prepared->kinetic_relaxation();
+    const auto finite = [](double time) { return std::isfinite(time) ? json(time) : json(); };
     json record = {{"name", prepared->scene().name},
                    {"preset", prepared->scene().preset},
                    {"parameters", scene_parameters(prepared->scene())},
-                   {"relaxation_time", std::isfinite(relaxation) ? json(relaxation) : json()},
-                   {"resolves_internal_energy", resolves},
+                   {"relaxation_time", finite(relaxation)},
+                   {"kinetic_relaxation_time", finite(kinetic)},
+                   {"resolves_internal_energy", resolves(study_, relaxation)},
+                   {"resolves_kinetic_energy", resolves(study_, kinetic)},
                    {"energy_per_particle", prepared->energy_per_particle()}};
-    if (!resolves) {
+    const double longest = std::max(relaxation, std::isfinite(kinetic) ? kinetic : 0);
+    if (std::isfinite(longest) && !resolves(study_, longest)) {
       record["note"] = fmt::format(
-          "internal energies relax in about {:.3g}: their observables need equilibration of {:.3g} "
-          "and measurement of {:.3g}",
-          relaxation, 5 * relaxation, 20 * relaxation);
+          "internal energies relax in about {:.3g}, kinetic energies in about {:.3g}: to resolve "
+          "both takes equilibration of {:.3g} and measurement of {:.3g}",
+          relaxation, kinetic, 5 * longest, 20 * longest);
     }
     scenes.push_back(record);
   }
@@ -245,7 +250,9 @@ json Campaign::scene_records() const {
 
 json Campaign::method_records() const {
   json records = json::array();
+  std::set<std::string> listed;
   for (const auto& choice : study_.methods) {
+    if (!listed.insert(choice.name).second) continue;
     const Method& method = *find_method(choice.name);
     records.push_back({{"name", method.name},
                        {"title", method.title},
@@ -254,7 +261,6 @@ json Campaign::method_records() const {
                        {"consistent", method.consistent},
                        {"galilean", method.galilean}});
   }
-  records.erase(std::unique(records.begin(), records.end()), records.end());
   return records;
 }
 

@@ -1,5 +1,7 @@
 #include "experiments/cell.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,14 +11,9 @@ namespace {
 using nlohmann::json;
 
 // Beyond this the replica started off equilibrium disagrees: with five observables compared, a
-// chance of some 1 in 30,000 a cell.
-constexpr double largest_agreeing_z = 4.5;
+// chance of some 1 in 300,000 a cell.
+constexpr double largest_agreeing_z = 5;
 constexpr double interval = 1.96;  // 95 %
-
-const ObservableSpec& spec_of(std::string_view name) {
-  const auto& specs = observable_specs();
-  return *std::find_if(specs.begin(), specs.end(), [&](const auto& s) { return s.name == name; });
-}
 
 bool is_distance(std::string_view name) { return name.ends_with("_distance"); }
 
@@ -39,20 +36,26 @@ std::string status_of(FailureCause cause) {
   throw std::logic_error("unknown failure cause");
 }
 
-/// Why the observables of u are not to be trusted, if so.
-std::string unresolved_note(const PreparedScene& prepared, const Study& study,
-                            const CellObservables& cell) {
-  if (!resolves_internal_energy(prepared, study)) {
-    return "equilibration below 5 or measurement below 20 predicted relaxation times of u";
+/// Why an observable that relaxes with the kinetic or the internal energies is not to be trusted,
+/// if so.
+std::string unresolved_note(Relaxation relaxation, const PreparedScene& prepared,
+                            const Study& study, const CellObservables& cell) {
+  if (relaxation == Relaxation::none) return "";
+  const bool internal = relaxation == Relaxation::internal_energy;
+  if (!resolves(study, internal ? prepared.relaxation() : prepared.kinetic_relaxation())) {
+    return fmt::format(
+        "equilibration below 5 or measurement below 20 predicted relaxation times of the {} "
+        "energies",
+        internal ? "internal" : "kinetic");
   }
-  if (cell.has_off_equilibrium && cell.largest_z > largest_agreeing_z) {
+  if ((internal ? cell.largest_z : cell.kinetic_z) > largest_agreeing_z) {
     return "the replica started off equilibrium disagrees with the others";
   }
   return "";
 }
 
 json observable_json(const Observed& observed, const std::string& unresolved) {
-  const auto& spec = spec_of(observed.name);
+  const auto& spec = observable_spec(observed.name);
   json entry = {{"mean", observed.value.mean},
                 {"error", observed.value.error},
                 {"effective_samples", observed.value.effective_samples},
@@ -66,7 +69,7 @@ json observable_json(const Observed& observed, const std::string& unresolved) {
   if (const auto& limits = observed.interval) {
     entry["interval"] = {limits->first, limits->second};
   }
-  if (spec.of_internal_energy && !unresolved.empty()) {
+  if (!unresolved.empty()) {
     entry["status"] = "not_resolved";
     entry["note"] = unresolved;
   } else if (observed.value.replicas_disagree) {
@@ -78,11 +81,12 @@ json observable_json(const Observed& observed, const std::string& unresolved) {
 json observables_of(const PreparedScene& prepared, const Study& study,
                     const CellObservables& cell) {
   json observables = json::object();
-  const auto unresolved = unresolved_note(prepared, study, cell);
   for (const auto& observed : cell.observed) {
     // Too few survivors leave no error at all: then there is no measurement either.
     if (!std::isfinite(observed.value.mean) || !std::isfinite(observed.value.error)) continue;
-    observables[std::string(observed.name)] = observable_json(observed, unresolved);
+    observables[std::string(observed.name)] = observable_json(
+        observed,
+        unresolved_note(observable_spec(observed.name).relaxation, prepared, study, cell));
   }
   return observables;
 }
@@ -120,18 +124,20 @@ json counts_of(const std::vector<ReplicaResult>& replicas) {
 }
 
 json identity(const PreparedScene& prepared, const MethodChoice& choice, double time_step) {
-  return {{"scene", prepared.scene().name},
-          {"method", choice.name},
-          {"options", to_json(choice.options)},
-          {"time_step", time_step}};
+  return {
+      {"scene", prepared.scene().name},
+      {"method", choice.name},
+      {"options", to_json(choice.options)},
+      {"time_step", time_step},
+      {"consistent", is_consistent(*find_method(choice.name), choice.options, prepared.fluid())}};
 }
 
 }  // namespace
 
-bool resolves_internal_energy(const PreparedScene& prepared, const Study& study) {
+bool resolves(const Study& study, double relaxation_time) {
   const double rounding = 1 - 1e-12;
-  return study.equilibrate >= 5 * prepared.relaxation() * rounding &&
-         study.measure >= 20 * prepared.relaxation() * rounding;
+  return study.equilibrate >= 5 * relaxation_time * rounding &&
+         study.measure >= 20 * relaxation_time * rounding;
 }
 
 json deviation(const Observed& observed) {
@@ -143,7 +149,9 @@ json deviation(const Observed& observed) {
     // The unbiased square may be negative; what it may hide is counted from zero.
     upper = root(std::max(0.0, observed.value.mean) + interval * error);
   } else {
-    const double scale = observed.exact->value != 0 ? std::abs(observed.exact->value) : 1;
+    // A skewness may well be near zero; it is a number in units of one.
+    const bool absolute = observed.exact->value == 0 || observed.name.ends_with("_skewness");
+    const double scale = absolute ? 1 : std::abs(observed.exact->value);
     centre = std::abs(observed.value.mean - observed.exact->value) / scale;
     error = std::hypot(error, observed.exact->error) / scale;
     lower = std::max(0.0, centre - interval * error);

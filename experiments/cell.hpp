@@ -25,8 +25,8 @@ nlohmann::json refused_cell(const PreparedScene& prepared, const MethodChoice& c
 /// relative difference with its 95 % interval; for distances their root, for drifts the size.
 nlohmann::json deviation(const Observed& observed);
 
-/// Whether a study is long enough for observables of the internal energies: equilibration of 5
-/// predicted relaxation times and measurement of 20.
-bool resolves_internal_energy(const PreparedScene& prepared, const Study& study);
+/// Whether a study is long enough for observables that relax in a predicted time: equilibration of
+/// 5 such times and measurement of 20.
+bool resolves(const Study& study, double relaxation_time);
 
 }  // namespace driftless

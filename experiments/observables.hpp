@@ -12,14 +12,18 @@
 
 namespace driftless {
 
+/// What an observable needs to have relaxed, if anything.
+enum class Relaxation { none, kinetic_energy, internal_energy };
+
 /// An observable as listed by `driftless observables`.
 struct ObservableSpec {
   std::string_view name;
   std::string_view unit;
   std::string_view meaning;
-  bool of_internal_energy;  ///< relaxes with u: unresolved in a run too short for that
+  Relaxation relaxation;  ///< unresolved in a run too short for it
 };
 const std::vector<ObservableSpec>& observable_specs();
+const ObservableSpec& observable_spec(std::string_view name);
 
 /// What one replica recorded while it was measured.
 struct Record {
@@ -83,6 +87,7 @@ struct CellObservables {
   Histogram radial_distribution;        ///< exact is empty with a potential
   std::string disagreeing;              ///< observable of the largest z of the replica started off
   double largest_z = 0;                 ///< equilibrium against the others; 0 without one
+  double kinetic_z = 0;                 ///< the same of observables of the kinetic energy alone
   bool has_off_equilibrium = false;
 };
 

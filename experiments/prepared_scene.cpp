@@ -13,6 +13,18 @@ constexpr int relaxation_paths = 30, pilot_burn_in = 40, pilot_paths = 120;
 constexpr int burn_in = 40, chain_paths = 400;
 constexpr std::uint64_t pilot_seed = 0;  // the energy belongs to the scene, not to the study
 
+/// Kinetic energy without that of the islands' centres of mass.
+double relative_kinetic_energy(const System& system, std::size_t islands) {
+  const std::size_t size = system.size() / islands;
+  double energy = system.kinetic_energy();
+  for (std::size_t first = 0; first + size <= system.size(); first += size) {
+    Vector sum = Vector::Zero();
+    for (std::size_t i = first; i < first + size; ++i) sum += system.state().velocity[i];
+    energy -= 0.5 * system.fluid().mass() * sum.squaredNorm() / static_cast<double>(size);
+  }
+  return energy;
+}
+
 double centre_of_mass_energy(const Scene& scene) {
   return 0.5 * scene.fluid.mass * static_cast<double>(scene.particles) *
          scene.frame_velocity.squaredNorm();
@@ -25,10 +37,10 @@ PreparedScene::PreparedScene(const Scene& scene, std::uint64_t seed, unsigned re
       fluid_(scene.fluid),
       box_(make_box(fluid_, scene.layout, scene.particles, scene.density, scene.pair_distance)),
       seed_(seed),
-      replicas_(replicas),
-      relaxation_(relaxation_time(scene)) {
+      replicas_(replicas) {
   find_law();
-  if (fluid_.has_repulsion() && fluid_.fluctuates()) {
+  const bool drawn = scene_.initial_state == InitialState::microcanonical;
+  if (fluid_.has_repulsion() && fluid_.fluctuates() && drawn) {
     prepare_with_repulsion();
   } else {
     prepare_ideal();
@@ -43,8 +55,10 @@ double PreparedScene::energy_unit() const {
 void PreparedScene::find_law() {
   if (!fluid_.fluctuates()) return;
   auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
-  // A pair at a fixed distance, or two particles, keep u_i - u_j without conduction; without
-  // friction nothing ties the kinetic energy to the internal energies.
+  // A pair at a fixed distance, or two particles, keep u_i - u_j without conduction; a solid's
+  // friction, in few fixed directions, keeps combinations of momenta; without friction nothing ties
+  // the kinetic energy to the internal energies.
+  if (scene_.frozen && scene_.layout == Layout::fluid && fluid_.has_friction()) return;
   if (fluid_.has_friction() && (law.particles >= 3 || fluid_.has_conduction())) {
     law_ = law;
   } else if (!fluid_.has_friction() && fluid_.has_conduction()) {
@@ -63,9 +77,14 @@ void PreparedScene::prepare_ideal() {
   total_energy_ = system.total_energy();
   const auto islands = microcanonical_law(fluid_, scene_.layout, scene_.particles).islands;
   double energy = system.internal_energy();
-  if (law_ && law_->degrees > 0) energy = total_energy_ - centre_of_mass_energy(scene_);
+  if (law_ && law_->degrees > 0) energy += relative_kinetic_energy(system, islands);
   island_energy_ = energy / static_cast<double>(islands);
-  if (law_ && !fluid_.has_repulsion()) reference_from_law();
+  if (!law_) return;
+  if (fluid_.has_repulsion()) {
+    reference_of_shares();
+  } else {
+    reference_from_law();
+  }
 }
 
 void PreparedScene::reference_from_law() {
@@ -120,10 +139,14 @@ void PreparedScene::prepare_with_repulsion() {
   if (law_ && law_->degrees > 0) reference_from_chain(samples);
 }
 
-void PreparedScene::reference_from_chain(const Eigen::MatrixXd& samples) {
+void PreparedScene::reference_of_shares() {
   references_["kinetic_share"] = {1, 0};
   references_["momentum_distance"] = {0, 0};
   references_["internal_energy_distance"] = {0, 0};
+}
+
+void PreparedScene::reference_from_chain(const Eigen::MatrixXd& samples) {
+  reference_of_shares();
   if (scene_.frozen) return;  // every replica keeps a configuration of its own
   const auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
   const double n = static_cast<double>(scene_.particles), k = fluid_.boltzmann();
@@ -140,8 +163,11 @@ void PreparedScene::reference_from_chain(const Eigen::MatrixXd& samples) {
   set("kinetic_temperature", column(4) / (k * total), mean);
   set("internal_temperature", column(4).cwiseInverse() * (k * (total - 1)),
       [](const Eigen::VectorXd& m) { return 1 / m[0]; });
-  set("configurational_temperature", samples.middleCols(2, 2),
-      [&](const Eigen::VectorXd& m) { return m[0] / (k * m[1]); });
+  // In this ensemble <lap Psi> = (A - 1) <|grad Psi|^2/(E - Psi)> exactly, which fluctuates less.
+  Eigen::MatrixXd forces(samples.rows(), 2);
+  forces << column(2), column(2).cwiseQuotient(column(4));
+  set("configurational_temperature", forces,
+      [&](const Eigen::VectorXd& m) { return m[0] / (k * (total - 1) * m[1]); });
   set("pressure", column(4) * (n / (total * box_.volume())) + column(1) / (3 * box_.volume()),
       mean);
   set("internal_energy_mean", column(4) * (a / total), mean);

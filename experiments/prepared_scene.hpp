@@ -52,14 +52,16 @@ class PreparedScene {
   double energy_per_particle() const { return total_energy_ / scene_.particles; }
   /// Energy unit of drifts: k T, or 1 where k is 0.
   double energy_unit() const;
-  /// Predicted relaxation time of internal energies.
-  double relaxation() const { return relaxation_; }
+  /// Predicted relaxation times of the internal and of the kinetic energies.
+  double relaxation() const { return relaxation_time(scene_); }
+  double kinetic_relaxation() const { return kinetic_relaxation_time(scene_); }
 
  private:
   void find_law();
   void prepare_ideal();
   void prepare_with_repulsion();
   void reference_from_law();
+  void reference_of_shares();
   void reference_from_chain(const Eigen::MatrixXd& samples);
   Noise noise(unsigned replica) const { return {seed_, replica}; }
 
@@ -68,7 +70,6 @@ class PreparedScene {
   Box box_;
   std::uint64_t seed_;
   unsigned replicas_;
-  double relaxation_ = 0;
   double total_energy_ = 0;
   double island_energy_ = 0;
   std::optional<MicrocanonicalLaw> law_;

@@ -102,12 +102,22 @@ double conduction_rate(const FluidParameters& fluid, double weight) {
          (fluid.heat_capacity * fluid.temperature * fluid.temperature);
 }
 
+/// Friction takes kinetic energy at this rate from a pair, or from the particles of a fluid.
+double kinetic_relaxation_rate(const Scene& scene) {
+  const auto& f = scene.fluid;
+  if (scene.layout == Layout::pairs) {
+    return 4 * f.friction * Fluid(f).friction_weight(scene.pair_distance) / f.mass;
+  }
+  return 2 * scene.density * f.friction * weight_volume(f.friction_range, f.weight_exponent) /
+         (3 * f.mass);
+}
+
 /// The slower of the two motions of a pair's energies, of those that there are: the sum follows the
 /// kinetic energy, which friction relaxes at 4 zeta w/m; conduction relaxes the difference.
 double pair_relaxation_rate(const Scene& scene) {
   const Fluid fluid(scene.fluid);
   const double distance = scene.pair_distance;
-  const double sum = 4 * scene.fluid.friction * fluid.friction_weight(distance) / scene.fluid.mass;
+  const double sum = kinetic_relaxation_rate(scene);
   const double difference = 2 * conduction_rate(scene.fluid, fluid.heat_weight(distance));
   return sum > 0 && difference > 0 ? std::min(sum, difference) : std::max(sum, difference);
 }
@@ -147,6 +157,11 @@ const Preset* find_preset(std::string_view name) {
   const auto found =
       std::find_if(all.begin(), all.end(), [&](const Preset& p) { return p.name == name; });
   return found == all.end() ? nullptr : &*found;
+}
+
+double kinetic_relaxation_time(const Scene& scene) {
+  const double rate = kinetic_relaxation_rate(scene);
+  return rate > 0 ? 1 / rate : std::numeric_limits<double>::infinity();
 }
 
 double relaxation_time(const Scene& scene) {

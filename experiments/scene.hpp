@@ -47,4 +47,9 @@ const std::vector<Preset>& presets();
 /// the rates at the pair's distance). Infinite if nothing acts.
 double relaxation_time(const Scene& scene);
 
+/// Predicted relaxation time of the kinetic energy towards the internal energies, by friction: rate
+/// 2 rho zeta_0 [w]/(3 m) in a fluid (twice the collision rate of Groot and Warren 1997), 4 zeta
+/// w/m for a pair. Infinite without friction.
+double kinetic_relaxation_time(const Scene& scene);
+
 }  // namespace driftless

@@ -72,6 +72,11 @@ void set_velocities(Scene& scene, const json& list) {
 std::string_view of_fluids(const Scene& scene) {
   return scene.layout == Layout::fluid ? "" : "isolated pairs stand on a lattice of their own";
 }
+std::string_view of_placed_fluids(const Scene& scene) {
+  const bool equilibrium = scene.fluid.has_repulsion() && scene.fluid.boltzmann > 0 &&
+                           scene.initial_state == InitialState::microcanonical;
+  return equilibrium ? "a fluid with repulsion starts from its equilibrium" : of_fluids(scene);
+}
 std::string_view of_pairs(const Scene& scene) {
   return scene.layout == Layout::pairs ? "" : "only isolated pairs have a distance";
 }
@@ -190,7 +195,7 @@ std::vector<SceneKey> keys_of_the_start() {
        [](Scene& scene, const json& value) {
          scene.initial_positions = value == "random" ? Placement::random : Placement::lattice;
        },
-       of_fluids},
+       of_placed_fluids},
       {"initial_velocity_spread", ValueRule::not_negative(),
        "standard deviation of a velocity component; makes initial_state \"given\"",
        [](const Scene& scene) -> json { return scene.initial_velocity_spread; },

@@ -53,6 +53,8 @@ struct Method {
   bool consistent = true;         ///< its limit of vanishing step is the model of theory
   bool galilean = true;           ///< a uniform velocity changes nothing
   bool order_independent = true;  ///< no order of pairs enters
+  /// Whether options leave it consistent in a fluid, where that depends on them; null: they do.
+  bool (*stays_consistent)(const Options&, const Fluid&) = nullptr;
   std::vector<FrictionClosure> closures = {};
   std::vector<OptionSpec> options = {};
   std::unique_ptr<Integrator> (*make)(const Options&) = nullptr;
@@ -67,6 +69,9 @@ void register_method(const Method& method);
 
 /// Why the method cannot run the fluid, in one sentence; nothing if it can.
 std::optional<std::string> refusal(const Method& method, const Fluid& fluid);
+
+/// Whether the limit of a method with these options in this fluid is the model.
+bool is_consistent(const Method& method, const Options& options, const Fluid& fluid);
 
 /// The value of an option, or its default. T is bool, double or std::string.
 template <class T>

@@ -55,6 +55,11 @@ std::optional<std::string> refusal(const Method& method, const Fluid& fluid) {
          ", this scene has the closure " + std::string(to_string(closure));
 }
 
+bool is_consistent(const Method& method, const Options& options, const Fluid& fluid) {
+  return method.consistent &&
+         (method.stays_consistent == nullptr || method.stays_consistent(options, fluid));
+}
+
 std::string_view to_string(FrictionClosure closure) {
   return closure == FrictionClosure::noise ? "noise" : "friction";
 }

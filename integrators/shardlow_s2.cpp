@@ -35,6 +35,10 @@ const Method shardlow_s2 = {
     .conserves = "momentum; energy to rounding without a potential",
     .energy_ideal = EnergyClaim::exact,
     .order_independent = false,
+    .stays_consistent =
+        [](const Options& options, const Fluid& fluid) {
+          return shardlow_is_consistent(fluid, option<bool>(shardlow_s2, options, "as_published"));
+        },
     .closures = {FrictionClosure::noise, FrictionClosure::friction},
     .options = {{"as_published", false, "leave the noise-induced friction out"}},
     .make = [](const Options& options) -> std::unique_ptr<Integrator> {

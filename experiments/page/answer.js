@@ -51,11 +51,6 @@ export function passes(judgement, tolerance) {
   return judgement.upper !== undefined && judgement.upper <= tolerance;
 }
 
-// Whether a method claims the model as its limit; one that the result does not list does.
-function is_consistent(result, method) {
-  return result.methods?.find(({name}) => name === method)?.consistent ?? true;
-}
-
 // One entry for each method of the scene, in the file's order: its judged cells and, of those that
 // pass, the cheapest (`best`, null where none passes with a known cost).
 export function methods_of(result, scene, observable, tolerance) {
@@ -63,8 +58,7 @@ export function methods_of(result, scene, observable, tolerance) {
   for (const cell of result.cells.filter((candidate) => candidate.scene === scene)) {
     const label = method_label(cell);
     if (!entries.has(label)) {
-      const consistent = is_consistent(result, cell.method);
-      entries.set(label, {label, consistent, judged: [], best: null});
+      entries.set(label, {label, consistent: cell.consistent, judged: [], best: null});
     }
     const entry = entries.get(label);
     const judged = {cell, judgement: judge(cell, observable), cost: cost_of(cell)};

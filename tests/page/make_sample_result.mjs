@@ -325,7 +325,13 @@ function cost_of(method, time_step, failed) {
 }
 
 function cell_of(scene, scene_index, method, time_step) {
-  const cell = {scene: scene.name, method: method.name, options: method.options ?? {}, time_step};
+  const cell = {
+    scene: scene.name,
+    method: method.name,
+    options: method.options ?? {},
+    time_step,
+    consistent: method.name !== inconsistent,
+  };
   if (method.noise_only && scene.parameters.friction_closure === 'friction') {
     return {
       ...cell,
@@ -487,6 +493,8 @@ const scenes = ['friction', 'noise'].map((closure) => ({
   parameters: {...shared_parameters, friction_closure: closure},
   relaxation_time: 11.4,
   resolves_internal_energy: true,
+  kinetic_relaxation_time: 1.9,
+  resolves_kinetic_energy: true,
   energy_per_particle: 28.875,
   note:
     closure === 'noise'
