@@ -30,16 +30,6 @@ struct Candidate {
   }
 };
 
-/// The name of a method together with its options, as people tell variants apart.
-std::string label(const json& cell) {
-  std::string text = cell["method"];
-  for (const auto& [name, value] : cell["options"].items()) {
-    text +=
-        fmt::format(", {} {}", name, value.is_string() ? value.get<std::string>() : value.dump());
-  }
-  return text;
-}
-
 /// Each method's cheapest passing cell, cheapest first.
 std::vector<Candidate> passing(const json& cells, const std::string& scene,
                                const std::string& observable, double tolerance) {
@@ -48,8 +38,8 @@ std::vector<Candidate> passing(const json& cells, const std::string& scene,
     if (cell["scene"] != scene || !cell["cost"]["core_seconds_per_time"].is_number()) continue;
     const json upper = passing_bound(cell, observable);
     if (!upper.is_number() || upper.get<double>() > tolerance) continue;
-    const Candidate candidate{label(cell), cell["time_step"], cell["cost"]["core_seconds_per_time"],
-                              upper, cell["consistent"]};
+    const Candidate candidate{method_label(cell), cell["time_step"],
+                              cell["cost"]["core_seconds_per_time"], upper, cell["consistent"]};
     const auto [known, added] = cheapest.emplace(candidate.method, candidate);
     if (!added && candidate.cost < known->second.cost) known->second = candidate;
   }
@@ -174,7 +164,8 @@ json orders_of(const json& cells, const std::string& scene, const std::string& o
     const auto& deviation = entry["deviation"];
     const double value = deviation["value"], lower = deviation["lower"], upper = deviation["upper"];
     if (deviation["below_noise"] || value < rounding) continue;
-    deviations[label(cell)].push_back({cell["time_step"], value, (upper - lower) / (2 * 1.96)});
+    deviations[method_label(cell)].push_back(
+        {cell["time_step"], value, (upper - lower) / (2 * 1.96)});
   }
   json orders = json::array();
   for (const auto& [method, points] : deviations) {
@@ -191,6 +182,15 @@ json orders_of(const json& cells, const std::string& scene, const std::string& o
 }
 
 }  // namespace
+
+std::string method_label(const json& cell) {
+  std::string text = cell["method"];
+  for (const auto& [name, value] : cell["options"].items()) {
+    text +=
+        fmt::format(", {} {}", name, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return text;
+}
 
 json passing_bound(const json& cell, const std::string& observable) {
   if (cell["status"] != "ok") return nullptr;

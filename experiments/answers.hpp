@@ -15,6 +15,9 @@ void add_answers(nlohmann::json& result);
 /// the internal energy.
 inline constexpr const char* equilibrium_observable = "equilibrium";
 
+/// The name of a cell's method together with its options, as people tell variants apart.
+std::string method_label(const nlohmann::json& cell);
+
 /// The upper end of a cell's deviation in an observable (or `equilibrium`), or null if the cell
 /// failed, does not know it, or does not resolve it.
 nlohmann::json passing_bound(const nlohmann::json& cell, const std::string& observable);

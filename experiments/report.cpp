@@ -40,34 +40,49 @@ std::string percent(double share) { return fmt::format("{:.2g} %", 100 * share);
 
 std::string step_text(const json& step) { return fmt::format("{:g}", step.get<double>()); }
 
+/// The energy drift of the cell that an answer names.
+std::string drift_text(const json& result, const json& answer) {
+  for (const auto& cell : result["cells"]) {
+    const bool named = cell["scene"] == answer["scene"] && method_label(cell) == answer["method"] &&
+                       cell["time_step"] == answer["time_step"];
+    if (!named || !cell["observables"].contains("energy_drift")) continue;
+    const auto& drift = cell["observables"]["energy_drift"];
+    return fmt::format("{:.1e} +- {:.0e}", drift["mean"].get<double>(),
+                       drift["error"].get<double>());
+  }
+  return "";
+}
+
 std::string answers_of(const json& result, const std::string& scene) {
   std::vector<Row> rows;
-  std::string beside;  // cheaper methods of another limit
+  std::string beside, last;  // cheaper methods of another limit
   for (const auto& answer : result["answers"]) {
     if (answer["scene"] != scene || answer["observable"] != equilibrium_observable) continue;
     Row row = {fmt::format("{:g} %", 100 * answer["tolerance"].get<double>())};
     if (answer["method"].is_null()) {
-      row.insert(row.end(), {"none shown to be", "", "", "", ""});
+      row.insert(row.end(), {"none shown to be", "", "", "", "", ""});
     } else {
       const auto& next = answer["runner_up"];
       row.insert(
           row.end(),
           {answer["method"], step_text(answer["time_step"]), percent(answer["upper"]),
-           fmt::format("{:.3g}", answer["cost"].get<double>()),
+           fmt::format("{:.3g}", answer["cost"].get<double>()), drift_text(result, answer),
            next.is_null() ? "none"
                           : fmt::format("{} at {}, {:.3g}", next["method"].get<std::string>(),
                                         step_text(next["time_step"]), next["cost"].get<double>())});
     }
     rows.push_back(row);
-    if (const auto& other = answer["cheaper_inconsistent"]; !other.is_null()) {
-      beside += fmt::format(
-          "\nWithin {:g} %, {} at step {} passes for {:.3g}, but its limit is not the model.\n",
-          100 * answer["tolerance"].get<double>(), other["method"].get<std::string>(),
-          step_text(other["time_step"]), other["cost"].get<double>());
-    }
+    const auto& other = answer["cheaper_inconsistent"];
+    if (other.is_null() || other.dump() == last) continue;
+    last = other.dump();
+    beside += fmt::format(
+        "\nFrom {:g} % on, {} at step {} passes for {:.3g}, but its limit is not the model.\n",
+        100 * answer["tolerance"].get<double>(), other["method"].get<std::string>(),
+        step_text(other["time_step"]), other["cost"].get<double>());
   }
   if (rows.empty()) return "";
-  return table({"tolerance", "method", "step", "wrong by at most", "core-s per time", "runner-up"},
+  return table({"tolerance", "method", "step", "wrong by at most", "core-s per time",
+                "energy drift, kT/particle/time", "runner-up"},
                rows) +
          beside;
 }
@@ -91,8 +106,7 @@ std::string map_of(const json& result, const std::string& scene) {
   std::string last;
   for (const auto& cell : result["cells"]) {
     if (cell["scene"] != scene) continue;
-    const std::string name = cell["method"].get<std::string>() +
-                             (cell["options"].empty() ? "" : " " + cell["options"].dump());
+    const std::string name = method_label(cell);
     if (rows.empty() || name != last) rows.push_back({name});
     last = name;
     rows.back().push_back(verdict(cell));
