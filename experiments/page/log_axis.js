@@ -20,11 +20,11 @@ export function log_ticks([from, to]) {
   return ticks.filter((tick) => tick >= from && tick <= to);
 }
 
-// The floor lies below the smallest upper end and the smallest resolved value; what is below noise
-// must not stretch the axis towards zero.
+// The floor lies below the smallest upper end and the smallest resolved value; what is below noise,
+// or an interval that almost reaches zero, must not stretch the axis towards zero.
 export function error_domain(rows, also = []) {
   const firm = rows.flatMap((row) =>
-    row.below_noise ? [row.upper] : [row.value, row.upper, row.lower],
+    row.below_noise ? [row.upper] : [row.value, row.upper, Math.max(row.lower, row.value / 4)],
   );
   const [low, high] = log_domain([...firm, ...also], 1);
   return [low / (rows.some((row) => row.below_noise) ? 2.5 : 1.4), high * 1.5];
