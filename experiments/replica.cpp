@@ -1,5 +1,6 @@
 #include "experiments/replica.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace driftless {
@@ -30,8 +31,10 @@ ReplicaResult run_replica(const PreparedScene& prepared, const Study& study,
     }
   };
   try {
-    advance(plan.equilibrate);
-    check_energy();
+    for (std::uint64_t done = 0; done < plan.equilibrate; done += plan.steps_per_sample) {
+      advance(std::min(plan.steps_per_sample, plan.equilibrate - done));
+      check_energy();
+    }
     Sampler sampler(prepared, system, replica, plan.samples);
     for (std::uint64_t sample = 0; sample < plan.samples; ++sample) {
       advance(plan.steps_per_sample);

@@ -34,9 +34,13 @@ export function judge(cell, observable) {
   if (without) return {state: 'no_exact_value', note: without.note ?? '', worst: without.name};
   const largest = (end) => Math.max(...parts.map((part) => part.deviation[end]));
   const upper = largest('upper');
+  const value = largest('value');
   return {
-    state: parts.every((part) => part.deviation.below_noise) ? 'below_noise' : 'resolved',
-    value: largest('value'),
+    // The value shown is that of one part: it is below noise if that part is.
+    state: parts.find((part) => part.deviation.value === value).deviation.below_noise
+      ? 'below_noise'
+      : 'resolved',
+    value,
     lower: largest('lower'),
     upper,
     worst: parts.find((part) => part.deviation.upper === upper).name,
