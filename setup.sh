@@ -80,6 +80,7 @@ need_to_run() {
   need libsundials-dev has_header cvode/cvode.h
   need libboost-dev has_header boost/random.hpp
   need librandom123-dev has_header Random123/philox.h
+  need libhwy-dev has_header hwy/highway.h
   need nlohmann-json3-dev has_header nlohmann/json.hpp
   need libcli11-dev has_header CLI/CLI.hpp
   need libfmt-dev has_header fmt/core.h

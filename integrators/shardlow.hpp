@@ -57,7 +57,7 @@ inline void shardlow_sweep(System& system, double dt, SweepOrder order, unsigned
   const Fluid& fluid = system.fluid();
   system.sweep(
       [&](const auto& pair) { return shardlow_exchange(fluid, pair, dt, order, as_published); },
-      order, stage);
+      {.order = order, .stage = stage});
 }
 
 }  // namespace driftless

@@ -59,6 +59,15 @@ Noise::PairNormals Noise::pair_normals(std::uint32_t id_i, std::uint32_t id_j, u
   return normals;
 }
 
+Noise::PairUniforms Noise::pair_uniforms(std::uint32_t id_i, std::uint32_t id_j,
+                                         unsigned stage) const {
+  const auto block = Philox{}(counter(id_i, id_j, stage, Purpose::pair_uniform), key_);
+  const auto uniform = [&](unsigned half) {
+    return (static_cast<double>(word(block, half) >> 12) + 0.5) * 0x1p-52;
+  };
+  return {uniform(0), uniform(1)};
+}
+
 NoiseStream Noise::particle_stream(std::uint32_t id, Purpose purpose) const {
   const auto own = counter(id, id, 0, purpose);
   return stream(own, Philox{}(own, key_), purpose);

@@ -16,6 +16,7 @@ enum class Purpose : std::uint8_t {
   initial_energy = 3,
   initial_position = 4,
   monte_carlo = 5,
+  pair_uniform = 6,
 };
 
 /// A uniform random bit generator (64 bits a call) over one key and one counter of Philox4x32-10
@@ -66,6 +67,12 @@ class Noise {
   /// wanted costs nothing and reads 0; the other one's number does not depend on it.
   PairNormals pair_normals(std::uint32_t id_i, std::uint32_t id_j, unsigned stage,
                            bool want_friction, bool want_heat) const;
+
+  /// Two uniform variates of a pair in (0, 1), independent of each other and of the normals.
+  struct PairUniforms {
+    double friction, heat;
+  };
+  PairUniforms pair_uniforms(std::uint32_t id_i, std::uint32_t id_j, unsigned stage) const;
 
   /// The stream of one particle for a purpose (initial states): step 0 is before the first step.
   NoiseStream particle_stream(std::uint32_t id, Purpose purpose) const;

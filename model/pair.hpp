@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "model/lanes.hpp"
+
 namespace driftless {
 
 /// What a pair (i, j), id_i < id_j, sees of itself; vectors are projected on e = (r_i - r_j)/r.
@@ -15,6 +17,9 @@ struct Pair {
   V u_i, u_j;    ///< internal energies
   V noise;       ///< standard normal variate of the friction; 0 where nothing fluctuates
   V heat_noise;  ///< standard normal variate of the conduction, independent of `noise`
+  /// Uniform variates in (0, 1), independent of all else, for who decides by chance; drawn only
+  /// where a sweep asks for them, 1 elsewhere.
+  V uniform{1}, heat_uniform{1};
 };
 
 /// A pair's state at the end of an implicit step, beside the `Pair` at its start.
@@ -41,5 +46,17 @@ struct Transfer {
 
 /// Order of a sweep over pairs, one after the other: ascending ids (i, then j) or the reverse.
 enum class SweepOrder { forward, reverse };
+
+/// What a pair sees of the internal energies in a sweep: the results of the pairs before it, or
+/// those at the start of the sweep, to which all changes are added at its end.
+enum class SweepEnergies { fresh, frozen };
+
+/// How a sweep goes over the pairs.
+struct Sweep {
+  SweepOrder order = SweepOrder::forward;
+  unsigned stage = 0;  ///< 0 to 255: which of a step's independent noises the pairs see
+  SweepEnergies energies = SweepEnergies::fresh;
+  bool uniforms = false;  ///< whether the uniform variates are drawn
+};
 
 }  // namespace driftless

@@ -49,9 +49,9 @@ class System {
   void accumulate(const Motion& trial, Kernel&& kernel, Exchange& total, unsigned stage = 0);
 
   /// Pair after pair in the given order, each seeing the results of the ones before it:
-  /// kernel(const Pair<double>&) -> Transfer<double>, applied at once. Throws StepFailure.
+  /// kernel(const Pair<V>&) -> Transfer<V>, applied at once. Throws StepFailure.
   template <class Kernel>
-  void sweep(Kernel&& kernel, SweepOrder order, unsigned stage = 0);
+  void sweep(Kernel&& kernel, const Sweep& how = {});
 
   /// Adds an exchange to momenta and internal energies. Throws StepFailure.
   void apply(const Exchange& exchange);
@@ -157,25 +157,36 @@ void System::accumulate(const Motion& trial, Kernel&& kernel, Exchange& total, u
 }
 
 template <class Kernel>
-void System::sweep(Kernel&& kernel, SweepOrder order, unsigned stage) {
-  const PairList& pairs = pairs_with_noise(stage);
+void System::sweep(Kernel&& kernel, const Sweep& how) {
+  const PairList& pairs = pairs_with_noise(how.stage);
   const double inverse_mass = 1 / fluid_.mass();
   std::vector<std::uint32_t> failed;
+  std::vector<double> end;
+  if (how.energies == SweepEnergies::frozen) end = state_.internal_energy;
+  auto& energies = how.energies == SweepEnergies::frozen ? end : state_.internal_energy;
   for (std::size_t n = 0; n < pairs.size(); ++n) {
-    const std::size_t pair = order == SweepOrder::forward ? n : pairs.size() - 1 - n;
+    const std::size_t pair = how.order == SweepOrder::forward ? n : pairs.size() - 1 - n;
     const auto& g = pairs.geometry(pair);
-    const Transfer<double> transfer = kernel(pair_state(pairs, pair));
+    Pair<double> seen = pair_state(pairs, pair);
+    if (how.uniforms) {
+      const auto uniforms = noise_.pair_uniforms(state_.id[g.i], state_.id[g.j], how.stage);
+      seen.uniform = uniforms.friction;
+      seen.heat_uniform = uniforms.heat;
+      counters_.random_numbers += 2;
+    }
+    const Transfer<double> transfer = kernel(seen);
     const Vector change = transfer.momentum * inverse_mass * g.e;
     state_.velocity[g.i] += change;
     state_.velocity[g.j] -= change;
-    double& u_i = state_.internal_energy[g.i];
-    double& u_j = state_.internal_energy[g.j];
+    double& u_i = energies[g.i];
+    double& u_j = energies[g.j];
     u_i += transfer.energy_i;
     u_j += transfer.energy_j;
     // A later pair could lift an energy above zero again: a fault in passing is a fault.
     if (u_i <= 0) failed.push_back(g.i);
     if (u_j <= 0) failed.push_back(g.j);
   }
+  if (how.energies == SweepEnergies::frozen) state_.internal_energy = std::move(end);
   counters_.pair_evaluations += pairs.size();
   check(failed);
 }

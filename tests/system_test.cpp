@@ -157,8 +157,8 @@ TEST(Sweep, LetsEveryPairSeeTheOnesBeforeItInTheOrderOfIdsOrItsReverse) {
   auto pairs = pairs_of(small_system().state());
   System forward = small_system(), reverse = small_system();
   const State start = forward.state();
-  forward.sweep(everything, SweepOrder::forward, 2);
-  reverse.sweep(everything, SweepOrder::reverse, 2);
+  forward.sweep(everything, {.order = SweepOrder::forward, .stage = 2});
+  reverse.sweep(everything, {.order = SweepOrder::reverse, .stage = 2});
   const State ahead = swept_by_hand(forward.fluid(), start, pairs, 2);
   std::reverse(pairs.begin(), pairs.end());
   const State back = swept_by_hand(forward.fluid(), start, pairs, 2);
@@ -206,7 +206,7 @@ TEST(Sweep, DoesNotForgiveAnEnergyBelowZeroThatALaterPairLifts) {
           const double energies[] = {-15, 30, 1};
           return Transfer<double>{0, energies[visit++], 0};
         },
-        SweepOrder::forward);
+        {.order = SweepOrder::forward});
   });
   EXPECT_EQ(visit, 3);
   EXPECT_EQ(failure.cause(), FailureCause::negative_internal_energy);
@@ -223,7 +223,7 @@ TEST(Sweep, TellsNumbersThatAreNotFiniteFromEnergiesBelowZero) {
           [&](const Pair<double>&) {
             return Transfer<double>{bad, 0, 0};
           },
-          SweepOrder::forward);
+          {.order = SweepOrder::forward});
     });
     EXPECT_EQ(momentum.cause(), FailureCause::non_finite);
     const auto energy = failure_of([&] {
@@ -231,7 +231,7 @@ TEST(Sweep, TellsNumbersThatAreNotFiniteFromEnergiesBelowZero) {
           [&](const Pair<double>&) {
             return Transfer<double>{0, bad, 0};
           },
-          SweepOrder::forward);
+          {.order = SweepOrder::forward});
     });
     EXPECT_EQ(energy.cause(), FailureCause::non_finite);
     EXPECT_EQ(energy.ids(), (std::vector<std::uint32_t>{20, 21}));
@@ -548,7 +548,7 @@ TEST(System, OfOneParticleHasNoPairs) {
   state.internal_energy = {4};
   state.id = {77};
   System system(Fluid(f), small_box(), state, Noise(0, 0));
-  system.sweep(everything, SweepOrder::forward);
+  system.sweep(everything);
   system.kick(1);
   system.move(1);
   EXPECT_EQ(system.counters().pair_evaluations, 0U);
@@ -575,7 +575,7 @@ TEST(System, OfTwoParticlesSeesThemThroughTheBox) {
         EXPECT_EQ(pair.u_j, 4);
         return Transfer<double>{1.25, 1, -1};
       },
-      SweepOrder::forward);
+      {.order = SweepOrder::forward});
   EXPECT_EQ(visits, 1);
   EXPECT_LT((system.state().velocity[0] - Vector(2, 0, 0)).norm(), 1e-15);
   EXPECT_LT((system.state().velocity[1] - Vector(-2, 5, 0)).norm(), 1e-15);
