@@ -100,10 +100,10 @@ void Sampler::take_distances(const State& state) {
   ++record_.distance_snapshots[block];
   auto& counts = record_.distance_blocks[block].counts;
   const double bins_per_length = distance_bins / distance_range(prepared_);
-  for (const auto& pair : distances_.find(state)) {
+  distances_.find(state, [&](const PairSearch::Found& pair) {
     const auto bin = static_cast<std::size_t>(std::sqrt(pair.squared_distance) * bins_per_length);
     ++counts[std::min(bin, distance_bins - 1)];
-  }
+  });
 }
 
 void Sampler::take(System& system, double time) {

@@ -89,7 +89,7 @@ ConfigurationSums configuration_sums(System& system) {
   ConfigurationSums sums;
   const Fluid& fluid = system.fluid();
   if (!fluid.has_repulsion()) return sums;
-  system.for_each_pair([&](const PairList::Geometry& pair) {
+  system.for_each_pair([&](const System::Geometry& pair) {
     sums.potential += fluid.potential(pair.r);
     sums.virial += pair.r * fluid.repulsive_force(pair.r);
     sums.laplacian += 2 * fluid.potential_laplacian(pair.r);

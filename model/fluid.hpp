@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/pair.hpp"
@@ -54,6 +55,13 @@ struct ConductionLaw {
   V induced;        ///< (1/2)(d/du_i - d/du_j) Lambda^2, the noise-induced heat rate
 };
 
+/// How the amplitude of a noise follows a pair's energies: d ln Gamma/du_i and d ln Gamma/du_j, or
+/// the same of Lambda.
+template <class V>
+struct AmplitudeSlopes {
+  V by_u_i, by_u_j;
+};
+
 /// The constitutive laws: what a pair exchanges per unit time, as functions of what the pair sees.
 /// Every function is pure and generic in V (double or a vector of lanes).
 class Fluid {
@@ -84,31 +92,55 @@ class Fluid {
     return V(parameters_.heat_capacity);
   }
   /// s(u) = phi ln u, up to a constant.
-  double entropy(double internal_energy) const {
-    return parameters_.heat_capacity * std::log(internal_energy);
+  template <class V>
+  V entropy(V internal_energy) const {
+    using std::log;
+    return parameters_.heat_capacity * log(internal_energy);
+  }
+  /// s(u + gain) - s(u), to rounding however small the gain; both energies must be above 0.
+  template <class V>
+  V entropy_gain(V internal_energy, V gain) const {
+    using std::abs;
+    using std::log;
+    // log(1 + x) = x log(y)/(y - 1) with y = 1 + x as rounded (Kahan).
+    const V x = gain / internal_energy, y = 1 + x, away = y - 1;
+    const auto seen = abs(away) > 0;
+    return parameters_.heat_capacity * x * select(seen, log(y) / select(seen, away, V(1)), V(1));
   }
   /// u(theta), the inverse of temperature().
   double internal_energy(double temperature) const {
     return parameters_.heat_capacity * temperature;
   }
 
-  double friction_weight(double distance) const {
+  template <class V>
+  V friction_weight(V distance) const {
     return weight(distance, parameters_.friction_range);
   }
-  double heat_weight(double distance) const { return weight(distance, parameters_.heat_range); }
+  template <class V>
+  V heat_weight(V distance) const {
+    return weight(distance, parameters_.heat_range);
+  }
 
   /// Repulsive force on i along e at distance r: a (1 - r/r_c) inside the range.
-  double repulsive_force(double distance) const {
-    const double x = 1 - distance / parameters_.repulsion_range;
-    return x > 0 ? parameters_.repulsion * x : 0;
+  template <class V>
+  V repulsive_force(V distance) const {
+    return parameters_.repulsion * depth(distance, parameters_.repulsion_range);
   }
   /// psi(r) = (a r_c/2)(1 - r/r_c)^2 inside the range.
-  double potential(double distance) const {
-    const double x = 1 - distance / parameters_.repulsion_range;
-    return x > 0 ? 0.5 * parameters_.repulsion * parameters_.repulsion_range * x * x : 0;
+  template <class V>
+  V potential(V distance) const {
+    const V x = depth(distance, parameters_.repulsion_range);
+    return 0.5 * parameters_.repulsion * parameters_.repulsion_range * x * x;
   }
   /// psi''(r) + 2 psi'(r)/r, the Laplacian of psi with respect to one particle's position.
   double potential_laplacian(double distance) const;
+
+  /// Theta of two internal energies, 1/Theta = (1/theta_i + 1/theta_j)/2 (Mackie et al. 2.37).
+  template <class V>
+  V mean_temperature(V u_i, V u_j) const {
+    const V theta_i = temperature(u_i), theta_j = temperature(u_j);
+    return 2 * theta_i * theta_j / (theta_i + theta_j);
+  }
 
   /// The friction law of a pair in its present state; zeta is constant in the energies for the
   /// closure `friction`, Gamma for the closure `noise`, where nothing is noise-induced.
@@ -116,7 +148,7 @@ class Fluid {
   FrictionLaw<V> friction(const Pair<V>& pair) const {
     const auto& f = parameters_;
     const V theta_i = temperature(pair.u_i), theta_j = temperature(pair.u_j);
-    const V mean = 2 * theta_i * theta_j / (theta_i + theta_j);  // Theta, Mackie et al. 2.37
+    const V mean = mean_temperature(pair.u_i, pair.u_j);
     const V zeta_0 = f.friction * pair.w_friction;
     if (f.friction_closure == FrictionClosure::noise) {
       return {zeta_0 * f.temperature / mean, 2 * f.boltzmann * zeta_0 * f.temperature, V(0)};
@@ -125,6 +157,19 @@ class Fluid {
                     (1 / (heat_capacity(pair.u_i) * theta_i * theta_i) +
                      1 / (heat_capacity(pair.u_j) * theta_j * theta_j));
     return {zeta_0, 2 * f.boltzmann * zeta_0 * mean, 0.25 * f.boltzmann * zeta_0 * slope};
+  }
+
+  /// d ln Gamma/du of either particle; 0 for the closure `noise`. The noise-induced friction is
+  /// Gamma^2/2 times their sum.
+  template <class V>
+  AmplitudeSlopes<V> friction_noise_slopes(const Pair<V>& pair) const {
+    if (parameters_.friction_closure == FrictionClosure::noise) return {V(0), V(0)};
+    const V mean = mean_temperature(pair.u_i, pair.u_j);
+    const auto slope = [&](V u) {
+      const V theta = temperature(u);
+      return mean / (4 * heat_capacity(u) * theta * theta);
+    };
+    return {slope(pair.u_i), slope(pair.u_j)};
   }
 
   /// The conduction law of a pair in its present state.
@@ -142,11 +187,39 @@ class Fluid {
                 (theta_j / heat_capacity(pair.u_i) - theta_i / heat_capacity(pair.u_j))};
   }
 
+  /// lambda of a pair in its present state.
+  template <class V>
+  V conductivity(const Pair<V>& pair) const {
+    const V coefficient = parameters_.conduction * pair.w_heat;
+    if (parameters_.heat_form != HeatForm::inverse_temperature) return coefficient;
+    return coefficient / (temperature(pair.u_i) * temperature(pair.u_j));
+  }
+
+  /// d ln Lambda/du of either particle; 0 for `inverse_temperature`. The noise-induced heat rate is
+  /// Lambda^2 times their difference.
+  template <class V>
+  AmplitudeSlopes<V> heat_noise_slopes(const Pair<V>& pair) const {
+    if (parameters_.heat_form != HeatForm::temperature) return {V(0), V(0)};
+    const auto slope = [&](V u) { return 1 / (2 * heat_capacity(u) * temperature(u)); };
+    return {slope(pair.u_i), slope(pair.u_j)};
+  }
+
  private:
-  double weight(double distance, double range) const {
-    const double x = 1 - distance / range;
-    if (x <= 0) return 0;
-    return parameters_.weight_exponent == 2 ? x * x : std::pow(x, parameters_.weight_exponent);
+  /// 1 - r/r_c, 0 beyond the range.
+  template <class V>
+  static V depth(V distance, double range) {
+    using std::max;
+    return max(1 - distance * (1 / range), V(0));
+  }
+  template <class V>
+  V weight(V distance, double range) const {
+    using std::exp;
+    using std::log;
+    const V x = depth(distance, range);
+    if (parameters_.weight_exponent == 2) return x * x;
+    // The logarithm of an argument in its domain, whatever lane is beyond the range.
+    const V power = exp(parameters_.weight_exponent * log(select(x > 0, x, V(1))));
+    return select(x > 0, power, V(0));
   }
 
   FluidParameters parameters_;

@@ -1,7 +1,5 @@
 #include "model/noise.hpp"
 
-#include <boost/random/normal_distribution.hpp>
-
 namespace driftless {
 namespace {
 
@@ -9,8 +7,8 @@ std::uint64_t word(const r123::Philox4x32::ctr_type& block, unsigned half) {
   return (std::uint64_t{block[2 * half + 1]} << 32) | block[2 * half];
 }
 
-// Counter word 3 is | stage: 8 | block: 8 | purpose: 8 | step: 8 (its highest bits) |. Two purposes
-// share block 0 (a half each), so that friction and heat of a pair cost one evaluation.
+// Counter word 3 is | stage: 8 | block: 8 | purpose: 8 | step: 8 (its highest bits) |. Block 0
+// gives a stream its first word, the later blocks give two each; of pairs there is no block but 0.
 constexpr std::uint32_t block_unit = 1U << 16;
 
 }  // namespace
@@ -38,39 +36,9 @@ Noise::Philox::ctr_type Noise::counter(std::uint32_t id_i, std::uint32_t id_j, u
                (static_cast<std::uint32_t>(step_ >> 32) & 0xffU)}};
 }
 
-NoiseStream Noise::stream(Philox::ctr_type own, Philox::ctr_type block, Purpose purpose) const {
-  return {key_, own, word(block, static_cast<unsigned>(purpose) % 2)};
-}
-
-Noise::PairNormals Noise::pair_normals(std::uint32_t id_i, std::uint32_t id_j, unsigned stage,
-                                       bool want_friction, bool want_heat) const {
-  const auto friction = counter(id_i, id_j, stage, Purpose::friction);
-  const auto block = Philox{}(friction, key_);
-  PairNormals normals{0, 0};
-  boost::random::normal_distribution<double> normal;
-  if (want_friction) {
-    auto numbers = stream(friction, block, Purpose::friction);
-    normals.friction = normal(numbers);
-  }
-  if (want_heat) {
-    auto numbers = stream(counter(id_i, id_j, stage, Purpose::heat), block, Purpose::heat);
-    normals.heat = normal(numbers);
-  }
-  return normals;
-}
-
-Noise::PairUniforms Noise::pair_uniforms(std::uint32_t id_i, std::uint32_t id_j,
-                                         unsigned stage) const {
-  const auto block = Philox{}(counter(id_i, id_j, stage, Purpose::pair_uniform), key_);
-  const auto uniform = [&](unsigned half) {
-    return (static_cast<double>(word(block, half) >> 12) + 0.5) * 0x1p-52;
-  };
-  return {uniform(0), uniform(1)};
-}
-
 NoiseStream Noise::particle_stream(std::uint32_t id, Purpose purpose) const {
   const auto own = counter(id, id, 0, purpose);
-  return stream(own, Philox{}(own, key_), purpose);
+  return {key_, own, word(Philox{}(own, key_), static_cast<unsigned>(purpose) % 2)};
 }
 
 }  // namespace driftless

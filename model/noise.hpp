@@ -3,6 +3,7 @@
 #include <Random123/philox.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -59,16 +60,29 @@ class Noise {
   void set_step(std::uint64_t step) { step_ = step; }
   std::uint64_t step() const { return step_; }
 
+  /// Independent standard normal variates of the pairs (id_i[n], id_j[n]), n < `count`, in a stage
+  /// (0 to 255) of the present step, by the method of Box and Muller (Ann. Math. Stat. 29, 610,
+  /// 1958); none is larger than 8.6. A purpose that is a null pointer is not wanted, which changes
+  /// nothing for the other one; nor does the place of a pair in the arrays. Lanes know no
+  /// remainder: all arrays are read and written up to the next multiple of Lanes::count(), of
+  /// model/lanes.hpp. Machines with and without fused multiply-add differ in rounding.
+  void pair_normals(std::size_t count, const std::uint32_t* id_i, const std::uint32_t* id_j,
+                    unsigned stage, double* friction, double* heat) const;
+
+  /// Uniform variates of pairs in (0, 1), independent of each other and of the normals; the
+  /// arrays are those of pair_normals().
+  void pair_uniforms(std::size_t count, const std::uint32_t* id_i, const std::uint32_t* id_j,
+                     unsigned stage, double* friction, double* heat) const;
+
   /// Two standard normal variates of a pair, `friction` and `heat`.
   struct PairNormals {
     double friction, heat;
   };
-  /// The normals of the pair (id_i, id_j) in a stage (0 to 255) of the present step. A purpose not
-  /// wanted costs nothing and reads 0; the other one's number does not depend on it.
+  /// The normals of one pair; a purpose not wanted reads 0.
   PairNormals pair_normals(std::uint32_t id_i, std::uint32_t id_j, unsigned stage,
                            bool want_friction, bool want_heat) const;
 
-  /// Two uniform variates of a pair in (0, 1), independent of each other and of the normals.
+  /// The uniform variates of one pair.
   struct PairUniforms {
     double friction, heat;
   };
@@ -79,7 +93,6 @@ class Noise {
 
  private:
   using Philox = NoiseStream::Philox;
-  NoiseStream stream(Philox::ctr_type counter, Philox::ctr_type block, Purpose purpose) const;
   Philox::ctr_type counter(std::uint32_t id_i, std::uint32_t id_j, unsigned stage,
                            Purpose purpose) const;
 

@@ -19,7 +19,7 @@ struct Pair {
   V heat_noise;  ///< standard normal variate of the conduction, independent of `noise`
   /// Uniform variates in (0, 1), independent of all else, for who decides by chance; drawn only
   /// where a sweep asks for them, 1 elsewhere.
-  V uniform{1}, heat_uniform{1};
+  V uniform{1.0}, heat_uniform{1.0};
 };
 
 /// A pair's state at the end of an implicit step, beside the `Pair` at its start.
@@ -32,9 +32,9 @@ struct TrialPair : Pair<V> {
 /// momentum -momentum e and energy_j.
 template <class V>
 struct Transfer {
-  V momentum{0};
-  V energy_i{0};
-  V energy_j{0};
+  V momentum{0.0};
+  V energy_i{0.0};
+  V energy_j{0.0};
 
   Transfer& operator+=(const Transfer& other) {
     momentum += other.momentum;
@@ -44,8 +44,18 @@ struct Transfer {
   }
 };
 
-/// Order of a sweep over pairs, one after the other: ascending ids (i, then j) or the reverse.
+template <class V>
+Transfer(V) -> Transfer<V>;
+template <class V>
+Transfer(V, V, V) -> Transfer<V>;
+
+/// A sweep's order of pairs or the reverse of it.
 enum class SweepOrder { forward, reverse };
+
+/// Which order that is: one that pairs far apart may share, given by where particles are and by
+/// their ids; or ascending ids (i, then j), which takes longer. They are the same to a system in a
+/// box shorter than four ranges of the interaction.
+enum class SweepSequence { coloured, by_ids };
 
 /// What a pair sees of the internal energies in a sweep: the results of the pairs before it, or
 /// those at the start of the sweep, to which all changes are added at its end.
@@ -54,6 +64,7 @@ enum class SweepEnergies { fresh, frozen };
 /// How a sweep goes over the pairs.
 struct Sweep {
   SweepOrder order = SweepOrder::forward;
+  SweepSequence sequence = SweepSequence::coloured;
   unsigned stage = 0;  ///< 0 to 255: which of a step's independent noises the pairs see
   SweepEnergies energies = SweepEnergies::fresh;
   bool uniforms = false;  ///< whether the uniform variates are drawn

@@ -1,227 +1,363 @@
 #include "model/pairs.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
+
+#include "model/lanes.hpp"
 
 namespace driftless {
 namespace {
 
-// Closer pairs have no direction; they are left out everywhere alike.
-constexpr double smallest_distance = 1e-10;
+namespace hn = hwy::HWY_NAMESPACE;
+using Floats = hn::ScalableTag<float>;
+using Indices = hn::RebindToUnsigned<Floats>;
+
+/// Particles side by side in the order of cells that may be near those of a cell, and the shift to
+/// the image at which the cell sees them.
+struct Segment {
+  std::uint32_t begin, end;
+  float shift[3];
+};
+
+/// The segments that meet every pair of cells once: a cell itself and the next one in x, then the
+/// four rows ahead in y and z.
+class Neighbours {
+ public:
+  Neighbours(const CellGrid& cells, int x, int y, int z) : cells_(cells), x_(x) {
+    add_row(x, y, z);
+    add_row(x - 1, y + 1, z);
+    add_row(x - 1, y - 1, z + 1);
+    add_row(x - 1, y, z + 1);
+    add_row(x - 1, y + 1, z + 1);
+  }
+  std::span<Segment> segments() { return {segments_, count_}; }
+  std::size_t particles() const {
+    std::size_t sum = 0;
+    for (std::size_t n = 0; n < count_; ++n) sum += segments_[n].end - segments_[n].begin;
+    return sum;
+  }
+
+ private:
+  /// The cells from `from` to x + 1 of a row, which may lie beyond the edges.
+  void add_row(int from, int y, int z) {
+    const auto& count = cells_.count();
+    const Vector& length = cells_.box().lengths;
+    const int last = count[0] - 1;
+    float shift_y = 0, shift_z = 0;
+    if (y < 0) y += count[1], shift_y = -static_cast<float>(length[1]);
+    if (y >= count[1]) y -= count[1], shift_y = static_cast<float>(length[1]);
+    if (z >= count[2]) z -= count[2], shift_z = static_cast<float>(length[2]);
+    const auto row = cells_.index(0, y, z);
+    const auto add = [&](int first, int end, float shift_x) {
+      segments_[count_++] = {cells_.begin(row + static_cast<std::size_t>(first)),
+                             cells_.begin(row + static_cast<std::size_t>(end)),
+                             {shift_x, shift_y, shift_z}};
+    };
+    add(std::max(from, 0), std::min(x_ + 1, last) + 1, 0);
+    if (from < 0) add(last, last + 1, -static_cast<float>(length[0]));
+    if (x_ == last) add(0, 1, static_cast<float>(length[0]));
+  }
+
+  const CellGrid& cells_;
+  int x_;
+  Segment segments_[15];
+  std::size_t count_ = 0;
+};
+
+/// As many particles side by side as there are lanes of single precision.
+struct Candidates {
+  std::array<hn::Vec<Floats>, 3> position;
+  hn::Vec<Indices> number;
+  hn::Mask<Floats> counted;
+
+  Candidates(const CellGrid& cells, std::uint32_t first, std::uint32_t end)
+      : number(hn::Iota(Indices(), first)), counted(hn::FirstN(Floats(), end - first)) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      position[axis] = hn::LoadU(Floats(), cells.rough_position()[axis].data() + first);
+    }
+  }
+};
+
+/// Writes the pairs of particle i with those candidates that are nearer than the root of `limit` to
+/// a point, its image. There is room for a whole vector of them. `wrap` finds the nearest image of
+/// any distance.
+template <bool wrap>
+HWY_INLINE void add_near(PairIndices& found, const CellGrid& cells, std::uint32_t i,
+                         const Candidates& candidates, const std::array<float, 3>& point,
+                         hn::Mask<Floats> counted, float limit) {
+  const Floats floats;
+  const Indices indices;
+  auto squared = hn::Zero(floats);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    auto difference = hn::Sub(candidates.position[axis], hn::Set(floats, point[axis]));
+    if constexpr (wrap) {
+      const auto length = static_cast<float>(cells.box().lengths[static_cast<Eigen::Index>(axis)]);
+      const auto images = hn::Round(hn::Mul(difference, hn::Set(floats, 1 / length)));
+      difference = hn::NegMulAdd(images, hn::Set(floats, length), difference);
+    }
+    squared = hn::MulAdd(difference, difference, squared);
+  }
+  const auto near =
+      hn::RebindMask(indices, hn::And(hn::Lt(squared, hn::Set(floats, limit)), counted));
+  // Compressed in the register: storing a part of a vector takes longer than all of it.
+  hn::StoreU(hn::Compress(candidates.number, near), indices, found.j.data() + found.size);
+  hn::StoreU(hn::Set(indices, i), indices, found.i.data() + found.size);
+  found.size += hn::CountTrue(indices, near);
+}
+
+void search_cell(PairIndices& found, const CellGrid& cells, int x, int y, int z, float limit) {
+  const auto cell = cells.index(x, y, z);
+  const auto begin = cells.begin(cell), end = cells.begin(cell + 1);
+  if (begin == end) return;
+  const auto& position = cells.rough_position();
+  Neighbours neighbours(cells, x, y, z);
+  const auto segments = neighbours.segments();
+  found.reserve((end - begin) * neighbours.particles());
+  for (const auto& segment : segments) {
+    const bool own = &segment == &segments[0];
+    for (auto first = segment.begin; first < segment.end; first += hn::Lanes(Floats())) {
+      const Candidates candidates(cells, first, segment.end);
+      for (auto i = begin; i < end; ++i) {
+        const std::array<float, 3> point = {position[0][i] - segment.shift[0],
+                                            position[1][i] - segment.shift[1],
+                                            position[2][i] - segment.shift[2]};
+        auto counted = candidates.counted;
+        if (own) {
+          const auto later = hn::Gt(candidates.number, hn::Set(Indices(), i));
+          counted = hn::And(counted, hn::RebindMask(Floats(), later));
+        }
+        add_near<false>(found, cells, i, candidates, point, counted, limit);
+      }
+    }
+  }
+}
+
+void search_all(PairIndices& found, const CellGrid& cells, float limit) {
+  const auto particles = static_cast<std::uint32_t>(cells.particles());
+  const auto& position = cells.rough_position();
+  for (std::uint32_t i = 0; i < particles; ++i) {
+    found.reserve(particles);
+    for (auto first = i + 1; first < particles; first += hn::Lanes(Floats())) {
+      const Candidates candidates(cells, first, particles);
+      add_near<true>(found, cells, i, candidates, {position[0][i], position[1][i], position[2][i]},
+                     candidates.counted, limit);
+    }
+  }
+}
+
+/// Makes i the one of the smaller id.
+void order_by_ids(PairIndices& found, const std::vector<std::uint32_t>& ids) {
+  const Indices indices;
+  const hn::RebindToSigned<Indices> numbers;
+  const auto* const base = ids.data();
+  const auto id_of = [&](auto particle) {
+    return hn::BitCast(indices, hn::GatherIndex(indices, base, hn::BitCast(numbers, particle)));
+  };
+  for (std::size_t n = 0; n < found.size; n += hn::Lanes(indices)) {
+    const auto i = hn::LoadU(indices, found.i.data() + n),
+               j = hn::LoadU(indices, found.j.data() + n);
+    const auto swap = hn::Gt(id_of(i), id_of(j));
+    hn::StoreU(hn::IfThenElse(swap, j, i), indices, found.i.data() + n);
+    hn::StoreU(hn::IfThenElse(swap, i, j), indices, found.j.data() + n);
+  }
+}
+
+/// Whole lanes may be read: what is beyond the last pair is then a particle with itself.
+void pad(PairIndices& pairs) {
+  pairs.reserve(0);
+  const auto end = static_cast<std::ptrdiff_t>(pairs.size);
+  std::fill_n(pairs.i.begin() + end, 2 * Lanes::count(), 0);
+  std::fill_n(pairs.j.begin() + end, 2 * Lanes::count(), 0);
+}
+
+/// Pairs that belong to groups, put side by side.
+void sort_by_group(const PairIndices& found, const std::vector<std::uint32_t>& group,
+                   std::uint32_t groups, PairGroups& sorted) {
+  sorted.end.assign(groups + 1, 0);
+  for (std::size_t n = 0; n < found.size; ++n) ++sorted.end[group[n] + 1];
+  for (std::uint32_t g = 0; g < groups; ++g) sorted.end[g + 1] += sorted.end[g];
+  sorted.pairs.size = 0;
+  sorted.pairs.reserve(found.size);
+  for (std::size_t n = 0; n < found.size; ++n) {
+    const auto place = sorted.end[group[n]]++;
+    sorted.pairs.i[place] = found.i[n];
+    sorted.pairs.j[place] = found.j[n];
+  }
+  sorted.pairs.size = found.size;
+  sorted.end.pop_back();
+  pad(sorted.pairs);
+}
+
+/// Each pair's group, the first in which neither of its particles is; `used` has a bit for each
+/// group of a particle. Returns the number of groups.
+std::uint32_t groups_of_few(const PairIndices& found, std::vector<std::uint64_t>& used,
+                            std::vector<std::uint32_t>& group) {
+  group.resize(found.size);
+  for (std::size_t n = 0; n < found.size; ++n) used[found.i[n]] = used[found.j[n]] = 0;
+  std::uint32_t groups = 0;
+  std::uint32_t crowded = 64;  // pairs for which all groups are taken are each a group
+  for (std::size_t n = 0; n < found.size; ++n) {
+    auto &of_i = used[found.i[n]], &of_j = used[found.j[n]];
+    const auto taken = of_i | of_j;
+    const auto free = static_cast<std::uint32_t>(std::countr_one(taken));
+    group[n] = free < 64 ? free : crowded++;
+    groups = std::max(groups, group[n] + 1);
+    if (free == 64) continue;
+    of_i |= std::uint64_t{1} << free;
+    of_j |= std::uint64_t{1} << free;
+  }
+  return groups;
+}
+
+/// Each pair's group, the one after those of its particles so far: group after group is then the
+/// same as pair after pair. Returns the number of groups.
+std::uint32_t groups_in_order(const PairIndices& found, std::vector<std::uint64_t>& last,
+                              std::vector<std::uint32_t>& group) {
+  group.resize(found.size);
+  for (std::size_t n = 0; n < found.size; ++n) last[found.i[n]] = last[found.j[n]] = 0;
+  std::uint32_t groups = 0;
+  for (std::size_t n = 0; n < found.size; ++n) {
+    auto &of_i = last[found.i[n]], &of_j = last[found.j[n]];
+    group[n] = static_cast<std::uint32_t>(std::max(of_i, of_j));
+    of_i = of_j = group[n] + 1;
+    groups = std::max(groups, group[n] + 1);
+  }
+  return groups;
+}
+
+constexpr std::size_t tile_width = 3;           // cells, where the box has room
+constexpr std::size_t particles_a_block = 300;  // so that a block's arrays stay in the cache
 
 }  // namespace
 
-PairSearch::PairSearch(const Box& box, double range, std::size_t particles)
-    : box_(box), range_(range) {
-  if (box.lengths.minCoeff() < 2 * range) {
-    std::ostringstream message;
-    message << "the box's shortest side " << box.lengths.minCoeff()
-            << " is below twice the range of the interaction " << range;
-    throw std::invalid_argument(message.str());
-  }
-  // Cells of at least one range, but no more than a few per particle, however dilute the system.
-  const double most = std::max(3.0, 2 * std::cbrt(static_cast<double>(particles)));
+void PairIndices::reserve(std::size_t more) {
+  const std::size_t needed = size + more + 2 * Lanes::count();
+  if (needed <= j.size()) return;
+  i.resize(needed + needed / 2);
+  j.resize(i.size());
+}
+
+PairBlocks::PairBlocks(const CellGrid& cells, double range, unsigned threads)
+    : range_(range), single_(cells.single()) {
+  const Eigen::Vector3i count = cells.count();
+  Eigen::Vector3i tiles;
   for (int axis = 0; axis < 3; ++axis) {
-    const double fit = range > 0 ? box.lengths[axis] / range : 1.0;
-    cells_[axis] = static_cast<int>(std::min(fit, most));
+    const int width = 2 * static_cast<int>(tile_width);
+    tiles[axis] = count[axis] < 4 ? 1 : 2 * std::max(1, count[axis] / width);
   }
-  use_cells_ = cells_.minCoeff() >= 3;
-}
-
-std::size_t PairSearch::cell_of(const Vector& position) const {
-  Eigen::Vector3i cell;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double x = position[axis] / box_.lengths[axis] * cells_[axis];
-    cell[axis] = std::clamp(static_cast<int>(x), 0, cells_[axis] - 1);
-  }
-  return cell_index(cell[0], cell[1], cell[2]);
-}
-
-void PairSearch::sort_into_cells(const State& state) {
-  std::vector<std::uint32_t> cell(state.size());
-  cell_begin_.assign(static_cast<std::size_t>(cells_.prod()) + 1, 0);
-  for (std::size_t i = 0; i < state.size(); ++i) {
-    cell[i] = static_cast<std::uint32_t>(cell_of(state.position[i]));
-    ++cell_begin_[cell[i] + 1];
-  }
-  for (std::size_t c = 1; c < cell_begin_.size(); ++c) cell_begin_[c] += cell_begin_[c - 1];
-  auto next = cell_begin_;
-  cell_position_.resize(state.size());
-  cell_place_.resize(state.size());
-  for (std::size_t i = 0; i < state.size(); ++i) {
-    const auto entry = next[cell[i]]++;
-    cell_position_[entry] = state.position[i];
-    cell_place_[entry] = static_cast<std::uint32_t>(i);
+  const auto all = static_cast<std::size_t>(tiles.prod());
+  const std::size_t a_tile = std::max<std::size_t>(1, cells.particles() / all);
+  for (int colour = 0; colour < 8; ++colour) {
+    const Eigen::Vector3i parity(colour & 1, colour >> 1 & 1, colour >> 2 & 1);
+    std::vector<PairBlock::Tile> alike;
+    for (int z = parity[2]; z < tiles[2]; z += 2) {
+      for (int y = parity[1]; y < tiles[1]; y += 2) {
+        for (int x = parity[0]; x < tiles[0]; x += 2) {
+          const Eigen::Array3i at(x, y, z);
+          alike.push_back({(at * count.array() / tiles.array()).matrix(),
+                           ((at + 1) * count.array() / tiles.array()).matrix()});
+        }
+      }
+    }
+    if (alike.empty()) continue;
+    add_blocks(alike, std::min(std::max<std::size_t>(1, particles_a_block / a_tile),
+                               std::max<std::size_t>(1, alike.size() / threads)));
   }
 }
 
-void PairSearch::keep(const State& state, std::uint32_t a, std::uint32_t b,
-                      const Vector& difference) {
-  const double squared = difference.squaredNorm();
-  if (state.id[a] < state.id[b]) {
-    unsorted_.push_back({a, b, difference, squared});
-  } else {
-    unsorted_.push_back({b, a, -difference, squared});
+void PairBlocks::add_blocks(const std::vector<PairBlock::Tile>& tiles, std::size_t per_block) {
+  first_.push_back(blocks_.size());
+  colours_.push_back((tiles.size() + per_block - 1) / per_block);
+  for (std::size_t n = 0; n < tiles.size(); n += per_block) {
+    PairBlock& block = blocks_.emplace_back();
+    const auto begin = tiles.begin() + static_cast<std::ptrdiff_t>(n);
+    block.tiles.assign(begin,
+                       begin + static_cast<std::ptrdiff_t>(std::min(per_block, tiles.size() - n)));
   }
 }
 
-void PairSearch::gather(std::size_t begin, std::size_t end, const Vector& shift) {
-  for (std::size_t entry = begin; entry < end; ++entry) {
-    candidates_.x.push_back(cell_position_[entry][0] + shift[0]);
-    candidates_.y.push_back(cell_position_[entry][1] + shift[1]);
-    candidates_.z.push_back(cell_position_[entry][2] + shift[2]);
-    candidates_.place.push_back(cell_place_[entry]);
-  }
+void PairBlocks::find(const CellGrid& cells, const Threads& threads) {
+  const double reach = range_ + cells.rough_margin();
+  const auto limit = range_ > 0 ? static_cast<float>(reach * reach) : 0.0F;
+  const std::size_t blocks[] = {blocks_.size()};
+  threads.phases(blocks, [&](unsigned, std::size_t, std::size_t n) {
+    PairBlock& block = blocks_[n];
+    block.found.size = 0;
+    block.grouped = false;
+    block.normals.clear();
+    for (const auto& [from, to] : block.tiles) {
+      if (cells.single()) search_all(block.found, cells, limit);
+      if (cells.single()) break;
+      for (int z = from[2]; z < to[2]; ++z) {
+        for (int y = from[1]; y < to[1]; ++y) {
+          for (int x = from[0]; x < to[0]; ++x) search_cell(block.found, cells, x, y, z, limit);
+        }
+      }
+    }
+    pad(block.found);
+    if (!cells.single()) order_by_ids(block.found, cells.id());
+  });
+  used_.resize(cells.particles());
+  sorted_by_ids_ = false;
 }
 
-void PairSearch::gather_half_shell(const Eigen::Vector3i& cell) {
-  for (auto* values : {&candidates_.x, &candidates_.y, &candidates_.z}) values->clear();
-  candidates_.place.clear();
-  // Every pair of cells once: the cell itself and the next one in x, then the four rows ahead in y
-  // and z. A cell beyond an edge is seen at its shifted image.
-  const int x = cell[0], last = cells_[0] - 1;
-  const auto row = [&](int from, int to, int y, int z) {
-    Vector shift(from < 0 ? -box_.lengths[0] : from > last ? box_.lengths[0] : 0, 0, 0);
-    if (y < 0) shift[1] = -box_.lengths[1];
-    if (y >= cells_[1]) shift[1] = box_.lengths[1];
-    if (z >= cells_[2]) shift[2] = box_.lengths[2];
-    const auto inside = [&](int index, int axis) { return (index + cells_[axis]) % cells_[axis]; };
-    y = inside(y, 1);
-    z = inside(z, 2);
-    gather(cell_begin_[cell_index(inside(from, 0), y, z)],
-           cell_begin_[cell_index(inside(to, 0), y, z) + 1], shift);
+std::size_t PairBlocks::pairs() const {
+  std::size_t sum = 0;
+  for (const auto& block : blocks_) sum += block.found.size;
+  return sum;
+}
+
+void PairBlocks::group(PairBlock& block) {
+  if (block.grouped) return;
+  block.grouped = true;
+  thread_local std::vector<std::uint32_t> group;
+  const auto groups = single_ ? groups_in_order(block.found, used_, group)
+                              : groups_of_few(block.found, used_, group);
+  sort_by_group(block.found, group, groups, block.groups);
+}
+
+const PairGroups& PairBlocks::by_ids(const CellGrid& cells) {
+  if (sorted_by_ids_) return by_ids_;
+  sorted_by_ids_ = true;
+  const auto& id = cells.id();
+  struct Pair {
+    std::uint64_t ids;
+    std::uint32_t i, j;
   };
-  row(x, x, cell[1], cell[2]);
-  row(x + 1, x + 1, cell[1], cell[2]);
-  constexpr int ahead[4][2] = {{1, 0}, {-1, 1}, {0, 1}, {1, 1}};
-  for (const auto& [dy, dz] : ahead) {
-    const int y = cell[1] + dy, z = cell[2] + dz;
-    row(std::max(x - 1, 0), std::min(x + 1, last), y, z);
-    if (x == 0) row(-1, -1, y, z);
-    if (x == last) row(last + 1, last + 1, y, z);
-  }
-}
-
-void PairSearch::visit_candidates(const State& state, std::size_t first) {
-  const auto& [x, y, z, place] = candidates_;
-  const std::size_t count = place.size();
-  const Vector position(x[first], y[first], z[first]);
-  squared_.resize(count);
-  within_.resize(count);
-  for (std::size_t other = first + 1; other < count; ++other) {
-    const double dx = position[0] - x[other], dy = position[1] - y[other],
-                 dz = position[2] - z[other];
-    squared_[other] = dx * dx + dy * dy + dz * dz;
-  }
-  // Most candidates fail and none predictably so: the filter has no branch.
-  const double limit = range_ * range_;
-  std::size_t kept = 0;
-  for (std::size_t other = first + 1; other < count; ++other) {
-    within_[kept] = static_cast<std::uint32_t>(other);
-    kept += squared_[other] < limit ? 1 : 0;
-  }
-  for (std::size_t n = 0; n < kept; ++n) {
-    const auto other = within_[n];
-    keep(state, place[first], place[other], position - Vector(x[other], y[other], z[other]));
-  }
-}
-
-void PairSearch::visit_cells(const State& state) {
-  sort_into_cells(state);
-  Eigen::Vector3i cell;
-  for (cell[2] = 0; cell[2] < cells_[2]; ++cell[2]) {
-    for (cell[1] = 0; cell[1] < cells_[1]; ++cell[1]) {
-      for (cell[0] = 0; cell[0] < cells_[0]; ++cell[0]) {
-        const auto index = cell_index(cell[0], cell[1], cell[2]);
-        const std::size_t own = cell_begin_[index + 1] - cell_begin_[index];
-        if (own == 0) continue;
-        gather_half_shell(cell);
-        for (std::size_t first = 0; first < own; ++first) visit_candidates(state, first);
-      }
+  std::vector<Pair> all;
+  for (const auto& block : blocks_) {
+    for (std::size_t n = 0; n < block.found.size; ++n) {
+      const auto i = block.found.i[n], j = block.found.j[n];
+      all.push_back({std::uint64_t{id[i]} << 32 | id[j], i, j});
     }
   }
+  std::sort(all.begin(), all.end(), [](const Pair& a, const Pair& b) { return a.ids < b.ids; });
+  PairIndices sorted;
+  sorted.reserve(all.size());
+  for (const auto& pair : all) {
+    sorted.i[sorted.size] = pair.i;
+    sorted.j[sorted.size++] = pair.j;
+  }
+  std::vector<std::uint32_t> group;
+  const auto groups = groups_in_order(sorted, used_, group);
+  sort_by_group(sorted, group, groups, by_ids_);
+  return by_ids_;
 }
 
-void PairSearch::visit_all(const State& state) {
-  for (std::uint32_t i = 0; i < state.size(); ++i) {
-    for (std::uint32_t j = i + 1; j < state.size(); ++j) {
-      const Vector difference = box_.minimum_image(state.position[i] - state.position[j]);
-      if (difference.squaredNorm() < range_ * range_) keep(state, i, j, difference);
+void PairSearch::find(const State& state, FunctionReference<void(const Found&)> visit) {
+  const Threads one;
+  cells_.sort(state, one);
+  blocks_.find(cells_, one);
+  for (const auto& block : blocks_.all()) {
+    for (std::size_t n = 0; n < block.found.size; ++n) {
+      const auto i = cells_.place()[block.found.i[n]], j = cells_.place()[block.found.j[n]];
+      const Vector difference = cells_.box().minimum_image(state.position[i] - state.position[j]);
+      const double squared = difference.squaredNorm();
+      if (squared < range_ * range_) visit({i, j, difference, squared});
     }
   }
-}
-
-void PairSearch::sort_by_ids(const State& state) {
-  // rank of each place in the order of ids; the order of storage almost always
-  std::vector<std::uint32_t> order(state.size()), rank(state.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto earlier = [&](auto a, auto b) { return state.id[a] < state.id[b]; };
-  if (!std::is_sorted(order.begin(), order.end(), earlier)) {
-    std::sort(order.begin(), order.end(), earlier);
-  }
-  for (std::uint32_t n = 0; n < order.size(); ++n) rank[order[n]] = n;
-  std::vector<std::uint32_t> next(state.size() + 1, 0);
-  for (const auto& pair : unsorted_) ++next[rank[pair.i] + 1];
-  for (std::size_t n = 1; n < next.size(); ++n) next[n] += next[n - 1];
-  const auto begin = next;
-  found_.resize(unsorted_.size());
-  for (const auto& pair : unsorted_) found_[next[rank[pair.i]]++] = pair;
-  for (std::size_t n = 0; n + 1 < begin.size(); ++n) {
-    // Insertion sort: a particle has a handful of partners.
-    for (std::size_t m = begin[n]; m < begin[n + 1]; ++m) {
-      const Found pair = found_[m];
-      std::size_t place = m;
-      for (; place > begin[n] && rank[found_[place - 1].j] > rank[pair.j]; --place) {
-        found_[place] = found_[place - 1];
-      }
-      found_[place] = pair;
-    }
-  }
-}
-
-const std::vector<PairSearch::Found>& PairSearch::find(const State& state) {
-  unsorted_.clear();
-  if (range_ > 0) use_cells_ ? visit_cells(state) : visit_all(state);
-  sort_by_ids(state);
-  return found_;
-}
-
-PairList::PairList(const Box& box, const Fluid& fluid, std::size_t particles)
-    : search_(box, fluid.range(), particles) {}
-
-void PairList::update(const State& state, const Fluid& fluid, std::uint64_t version) {
-  if (version_ == version) return;
-  version_ = version;
-  drawn_ = false;
-  geometry_.clear();
-  for (const auto& found : search_.find(state)) {
-    const double r = std::sqrt(found.squared_distance);
-    if (r < smallest_distance) continue;
-    geometry_.push_back({found.i, found.j, found.difference / r, r,
-                         fluid.has_friction() ? fluid.friction_weight(r) : 0.0,
-                         fluid.has_conduction() ? fluid.heat_weight(r) : 0.0});
-  }
-}
-
-std::uint64_t PairList::draw(const State& state, const Fluid& fluid, const Noise& noise,
-                             unsigned stage) {
-  if (drawn_ && drawn_step_ == noise.step() && drawn_stage_ == stage) return 0;
-  drawn_ = true;
-  drawn_step_ = noise.step();
-  drawn_stage_ = stage;
-  normals_.assign(geometry_.size(), {0.0, 0.0});
-  if (!fluid.fluctuates()) return 0;
-  std::uint64_t numbers = 0;
-  for (std::size_t pair = 0; pair < geometry_.size(); ++pair) {
-    const auto& g = geometry_[pair];
-    const bool friction = g.w_friction > 0, heat = g.w_heat > 0;
-    if (!friction && !heat) continue;
-    normals_[pair] = noise.pair_normals(state.id[g.i], state.id[g.j], stage, friction, heat);
-    numbers += static_cast<std::uint64_t>(friction) + static_cast<std::uint64_t>(heat);
-  }
-  return numbers;
 }
 
 }  // namespace driftless

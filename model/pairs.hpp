@@ -1,16 +1,86 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "model/fluid.hpp"
-#include "model/noise.hpp"
-#include "model/state.hpp"
+#include "model/cell_grid.hpp"
+#include "model/pair.hpp"
+#include "model/threads.hpp"
 
 namespace driftless {
 
-/// All pairs within a range, in the order of ids (i, then j, id_i < id_j): a linked-cell search,
-/// or a plain double loop where the box is shorter than three cells. e points from j to i.
+/// Pairs of particles by their numbers in the order of cells; id_i < id_j. Both arrays are readable
+/// to the next multiple of the lanes.
+struct PairIndices {
+  std::vector<std::uint32_t> i, j;
+  std::size_t size = 0;
+
+  /// Makes room for `more` pairs beyond the present ones.
+  void reserve(std::size_t more);
+};
+
+/// Pairs in groups that may be treated at once, as no particle is twice in a group; a group stands
+/// for a place in the order of a sweep.
+struct PairGroups {
+  PairIndices pairs;
+  std::vector<std::uint32_t> end;  ///< of each group
+};
+
+/// A part of all pairs, found and visited together.
+struct PairBlock {
+  struct Tile {
+    Eigen::Vector3i from, to;  ///< cells [from, to)
+  };
+  std::vector<Tile> tiles;
+  PairIndices found;
+  PairGroups groups;
+  bool grouped = false;
+  /// The normals of friction and then those of heat, where they are kept, and of which step and
+  /// stage they are.
+  std::vector<double> normals;
+  std::uint64_t normals_step = 0;
+  unsigned normals_stage = 0;
+};
+
+/// All pairs within a range, in blocks. The cells are cut into tiles, coloured so that two tiles of
+/// one colour share no particle, neighbours included: blocks of a colour may be treated at once,
+/// and what comes out does not depend on how tiles are put together to blocks. A single cell is one
+/// block, its pairs in the order of ids.
+class PairBlocks {
+ public:
+  PairBlocks(const CellGrid& cells, double range, unsigned threads);
+
+  /// Finds the pairs anew. Single precision decides: a pair beyond the range by up to the cells'
+  /// margin may be among them.
+  void find(const CellGrid& cells, const Threads& threads);
+
+  std::size_t pairs() const;
+  /// How many blocks each colour has.
+  std::span<const std::size_t> colours() const { return colours_; }
+  PairBlock& block(std::size_t colour, std::size_t n) { return blocks_[first_[colour] + n]; }
+  std::vector<PairBlock>& all() { return blocks_; }
+
+  /// Puts a block's pairs into groups, once: each pair into the first group that has neither of its
+  /// particles; in a single cell so that the order is that of ids. Blocks of one colour at once.
+  void group(PairBlock& block);
+  /// All pairs one after the other in the order of ids (i, then j): a group is of pairs that do not
+  /// see each other's results.
+  const PairGroups& by_ids(const CellGrid& cells);
+
+ private:
+  void add_blocks(const std::vector<PairBlock::Tile>& tiles, std::size_t per_block);
+
+  double range_;
+  bool single_;
+  std::vector<PairBlock> blocks_;
+  std::vector<std::size_t> colours_, first_;
+  std::vector<std::uint64_t> used_;  ///< groups of each particle, a bit each
+  PairGroups by_ids_;
+  bool sorted_by_ids_ = false;
+};
+
+/// All pairs within a range of any state, for who looks from outside.
 class PairSearch {
  public:
   struct Found {
@@ -21,73 +91,16 @@ class PairSearch {
 
   /// `particles` bounds the number of cells. Throws std::invalid_argument if the box is shorter
   /// than twice the range.
-  PairSearch(const Box& box, double range, std::size_t particles);
+  PairSearch(const Box& box, double range, std::size_t particles)
+      : range_(range), cells_(box, range, particles), blocks_(cells_, range, 1) {}
 
-  /// Finds every pair closer than the range; the result is valid until the next call.
-  const std::vector<Found>& find(const State& state);
+  /// visit(const Found&) for every pair closer than the range.
+  void find(const State& state, FunctionReference<void(const Found&)> visit);
 
  private:
-  void sort_into_cells(const State& state);
-  void visit_all(const State& state);
-  void visit_cells(const State& state);
-  void gather_half_shell(const Eigen::Vector3i& cell);
-  void gather(std::size_t begin, std::size_t end, const Vector& shift);
-  void visit_candidates(const State& state, std::size_t first);
-  void keep(const State& state, std::uint32_t a, std::uint32_t b, const Vector& difference);
-  void sort_by_ids(const State& state);
-  std::size_t cell_of(const Vector& position) const;
-  std::size_t cell_index(int x, int y, int z) const {
-    return (static_cast<std::size_t>(z) * cells_[1] + y) * cells_[0] + x;
-  }
-
-  Box box_;
   double range_;
-  Eigen::Vector3i cells_;
-  bool use_cells_;
-  std::vector<std::uint32_t> cell_begin_;
-  std::vector<Vector> cell_position_;  ///< particles sorted by cell, x fastest
-  std::vector<std::uint32_t> cell_place_;
-  /// A cell's particles and then those of half of its neighbours, as seen from the cell.
-  struct Candidates {
-    std::vector<double> x, y, z;
-    std::vector<std::uint32_t> place;
-  } candidates_;
-  std::vector<double> squared_;        ///< scratch: distances of one particle to the candidates
-  std::vector<std::uint32_t> within_;  ///< scratch: candidates within range of one particle
-  std::vector<Found> unsorted_;
-  std::vector<Found> found_;
-};
-
-/// The pairs of a system with what the kernels need of them: geometry and weights, renewed when
-/// positions change, and noise, renewed when step or stage change.
-class PairList {
- public:
-  struct Geometry {
-    std::uint32_t i, j;
-    Vector e;
-    double r, w_friction, w_heat;
-  };
-  using Normals = Noise::PairNormals;
-
-  PairList(const Box& box, const Fluid& fluid, std::size_t particles);
-
-  /// Brings the geometry up to date with positions of the given version.
-  void update(const State& state, const Fluid& fluid, std::uint64_t version);
-  /// Brings the noise up to date; returns how many random numbers were drawn.
-  std::uint64_t draw(const State& state, const Fluid& fluid, const Noise& noise, unsigned stage);
-
-  std::size_t size() const { return geometry_.size(); }
-  const Geometry& geometry(std::size_t pair) const { return geometry_[pair]; }
-  const Normals& normals(std::size_t pair) const { return normals_[pair]; }
-
- private:
-  PairSearch search_;
-  std::vector<Geometry> geometry_;
-  std::vector<Normals> normals_;
-  std::uint64_t version_ = 0;  ///< of the positions; 0 is none
-  bool drawn_ = false;
-  std::uint64_t drawn_step_ = 0;
-  unsigned drawn_stage_ = 0;
+  CellGrid cells_;
+  PairBlocks blocks_;
 };
 
 }  // namespace driftless

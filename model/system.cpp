@@ -7,6 +7,9 @@
 namespace driftless {
 namespace {
 
+/// So many that what the passes read and write stays in the cache.
+constexpr std::size_t pairs_a_chunk = 512;
+
 /// Brings positions into the box; throws std::invalid_argument if the state makes no sense.
 State valid(const Box& box, State state) {
   const std::size_t particles = state.size();
@@ -34,17 +37,187 @@ System::System(const Fluid& fluid, const Box& box, State state, const Noise& noi
       state_(valid(box, std::move(state))),
       noise_(noise),
       frozen_(frozen),
-      pairs_(box, fluid, state_.size()) {}
-
-PairList& System::up_to_date_pairs() {
-  pairs_.update(state_, fluid_, positions_version_);
-  return pairs_;
+      cells_(box, fluid_.range(), state_.size()),
+      pairs_(cells_, fluid_.range(), 1) {
+  set_threads(1);
 }
 
-PairList& System::pairs_with_noise(unsigned stage) {
-  PairList& pairs = up_to_date_pairs();
-  counters_.random_numbers += pairs.draw(state_, fluid_, noise_, stage);
-  return pairs;
+void System::set_threads(unsigned count) {
+  threads_ = Threads(count);
+  cells_ = CellGrid(box_, fluid_.range(), size());
+  pairs_ = PairBlocks(cells_, fluid_.range(), threads_.count());
+  passes_.resize(threads_.count());
+  pairs_version_ = 0;
+}
+
+void System::find_pairs() {
+  if (pairs_version_ == positions_version_) return;
+  pairs_version_ = positions_version_;
+  cells_.sort(state_, threads_);
+  pairs_.find(cells_, threads_);
+}
+
+void System::gather_motion(const Motion& motion, std::vector<Quadruple>& gathered) const {
+  gathered.resize(size() + 1);  // one more, which is nobody's
+  const auto& place = cells_.place();
+  for_each_particle([&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const Vector& v = motion.velocity[place[n]];
+      gathered[n] = {v[0], v[1], v[2], motion.internal_energy[place[n]]};
+    }
+  });
+}
+
+void System::count_visit(bool noise, bool uniforms) {
+  const std::uint64_t pairs = pairs_.pairs();
+  counters_.pair_evaluations += pairs;
+  const auto normals =
+      static_cast<unsigned>(fluid_.has_friction()) + static_cast<unsigned>(fluid_.has_conduction());
+  if (noise && fluid_.fluctuates()) counters_.random_numbers += pairs * normals;
+  if (uniforms) counters_.random_numbers += 2 * pairs;
+}
+
+bool System::has_kept_normals(const PairBlock& block, unsigned stage) const {
+  return block.normals.size() == 2 * block.found.size && block.found.size > 0 &&
+         block.normals_step == noise_.step() && block.normals_stage == stage;
+}
+
+void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total,
+                        unsigned stage) {
+  find_pairs();
+  gather_motion(state_, motion_);
+  if (trial) gather_motion(*trial, trial_);
+  const PassParticles particles{motion_.data(), trial_.data(), &motion_.data()->energy, nullptr};
+  const bool kept =
+      trial && std::all_of(pairs_.all().begin(), pairs_.all().end(), [&](auto& block) {
+        return block.found.size == 0 || has_kept_normals(block, stage);
+      });
+  for_each_chunk([&](PairPass& pass, PairBlock& block, std::size_t first, std::size_t count) {
+    pass.geometry();
+    const std::size_t pairs = block.found.size;
+    if (kept) {
+      pass.recall_normals(block.normals.data() + first, pairs);
+    } else {
+      pass.draw_normals(noise_, stage);
+    }
+    if (trial && !kept) {
+      // An implicit method will come again.
+      block.normals.resize(2 * pairs);
+      block.normals_step = noise_.step();
+      block.normals_stage = stage;
+      pass.keep_normals(block.normals.data() + first, pairs);
+    }
+    pass.motion(particles, 0, count);
+    if (trial) pass.trial(particles);
+    pass.run(kernel, 0, count);
+  });
+  total.reset(size());
+  scatter_sums(total.momentum, total.energy);
+  count_visit(!kept, false);
+}
+
+void System::for_each_chunk(
+    FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer) {
+  sums_.assign(size(), {});
+  threads_.phases(pairs_.colours(), [&](unsigned thread, std::size_t colour, std::size_t task) {
+    PairBlock& block = pairs_.block(colour, task);
+    PairPass& pass = passes_[thread];
+    for (std::size_t first = 0; first < block.found.size; first += pairs_a_chunk) {
+      const std::size_t count = std::min(pairs_a_chunk, block.found.size - first);
+      pass.take(fluid_, cells_, block.found, first, count);
+      answer(pass, block, first, count);
+      pass.add(sums_.data());
+    }
+  });
+}
+
+void System::scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy) const {
+  const auto& place = cells_.place();
+  for_each_particle([&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      momentum[place[n]] = Vector(sums_[n].x, sums_[n].y, sums_[n].z);
+      energy[place[n]] = sums_[n].energy;
+    }
+  });
+}
+
+void System::sweep_groups(PairPass& pass, const PairGroups& groups, const PassParticles& particles,
+                          const PairKernel& kernel, const Sweep& how,
+                          std::vector<std::uint32_t>& failed) {
+  pass.take(fluid_, cells_, groups.pairs, 0, groups.pairs.size);
+  pass.geometry();
+  pass.draw_normals(noise_, how.stage);
+  if (how.uniforms) {
+    pass.draw_uniforms(noise_, how.stage);
+  } else {
+    pass.draw_no_uniforms();
+  }
+  for (std::size_t n = 0; n < groups.end.size(); ++n) {
+    const std::size_t g = how.order == SweepOrder::forward ? n : groups.end.size() - 1 - n;
+    const std::size_t from = g > 0 ? groups.end[g - 1] : 0, to = groups.end[g];
+    pass.motion(particles, from, to);
+    pass.run(kernel, from, to);
+    if (pass.apply(particles, from, to)) continue;
+    // A later pair could lift an energy above zero again: a fault in passing is a fault.
+    for (std::size_t pair = from; pair < to; ++pair) {
+      for (const auto particle : {groups.pairs.i[pair], groups.pairs.j[pair]}) {
+        if (motion_[particle].energy <= 0) failed.push_back(cells_.id()[particle]);
+      }
+    }
+  }
+}
+
+void System::sweep(const PairKernel& kernel, const Sweep& how) {
+  find_pairs();
+  gather_motion(state_, motion_);
+  PassParticles particles{motion_.data(), nullptr, &motion_.data()->energy, motion_.data()};
+  if (how.energies == SweepEnergies::frozen) {
+    frozen_motion_ = motion_;
+    particles.energy = &frozen_motion_.data()->energy;
+  }
+  std::vector<std::vector<std::uint32_t>> failed(threads_.count());
+  if (how.sequence == SweepSequence::by_ids) {
+    sweep_groups(passes_[0], pairs_.by_ids(cells_), particles, kernel, how, failed[0]);
+  } else {
+    const auto colours = pairs_.colours();
+    std::vector<std::size_t> tasks(colours.begin(), colours.end());
+    const bool reverse = how.order == SweepOrder::reverse;
+    if (reverse) std::reverse(tasks.begin(), tasks.end());
+    threads_.phases(tasks, [&](unsigned thread, std::size_t phase, std::size_t task) {
+      PairBlock& block = pairs_.block(reverse ? tasks.size() - 1 - phase : phase, task);
+      pairs_.group(block);
+      sweep_groups(passes_[thread], block.groups, particles, kernel, how, failed[thread]);
+    });
+  }
+  const auto& place = cells_.place();
+  for_each_particle([&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      state_.velocity[place[n]] = Vector(motion_[n].x, motion_[n].y, motion_[n].z);
+      state_.internal_energy[place[n]] = motion_[n].energy;
+    }
+  });
+  count_visit(true, how.uniforms);
+  for (std::size_t thread = 1; thread < failed.size(); ++thread) {
+    failed[0].insert(failed[0].end(), failed[thread].begin(), failed[thread].end());
+  }
+  check(std::move(failed[0]));
+}
+
+void System::for_each_pair(FunctionReference<void(const Geometry&)> visit) {
+  find_pairs();
+  const auto& place = cells_.place();
+  for (const auto& block : pairs_.all()) {
+    PairPass& pass = passes_[0];
+    pass.take(fluid_, cells_, block.found, 0, block.found.size);
+    pass.geometry();
+    const PairArrays& pair = pass.arrays();
+    for (std::size_t n = 0; n < block.found.size; ++n) {
+      if (pair.r[n] >= fluid_.range() || pair.r[n] == 0) continue;
+      visit({place[block.found.i[n]], place[block.found.j[n]],
+             Vector(pair.e_x[n], pair.e_y[n], pair.e_z[n]), pair.r[n], pair.w_friction[n],
+             pair.w_heat[n]});
+    }
+  }
 }
 
 void System::apply(const Exchange& exchange) {
@@ -61,40 +234,49 @@ void System::set_motion(const Motion& motion) {
   check();
 }
 
-void System::check(const std::vector<std::uint32_t>& failed) const {
-  std::vector<std::uint32_t> ids;
-  bool negative = !failed.empty();
-  for (const auto place : failed) ids.push_back(state_.id[place]);
-  for (std::size_t i = 0; i < size(); ++i) {
+void System::check(std::vector<std::uint32_t> failed) const {
+  bool sound = failed.empty();
+  const auto is_sound = [&](std::size_t i) {
     const double u = state_.internal_energy[i];
-    if (u > 0 && std::isfinite(u) && std::isfinite(state_.velocity[i].squaredNorm())) continue;
-    ids.push_back(state_.id[i]);
-    negative = negative || u <= 0;
+    return u > 0 && std::isfinite(u) && std::isfinite(state_.velocity[i].squaredNorm());
+  };
+  for (std::size_t i = 0; i < size(); ++i) sound = sound & is_sound(i);
+  if (sound) return;
+  bool negative = !failed.empty();
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (is_sound(i)) continue;
+    failed.push_back(state_.id[i]);
+    negative = negative || state_.internal_energy[i] <= 0;
   }
-  if (ids.empty()) return;
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  std::sort(failed.begin(), failed.end());
+  failed.erase(std::unique(failed.begin(), failed.end()), failed.end());
   // An energy below zero makes the roots that follow it non-finite: it is the cause of both.
   throw StepFailure(negative ? FailureCause::negative_internal_energy : FailureCause::non_finite,
-                    std::move(ids));
+                    std::move(failed));
 }
 
 void System::kick(double duration) {
   if (!fluid_.has_repulsion()) return;
   const auto& force = conservative_force();
   const double factor = duration / fluid_.mass();
-  for (std::size_t i = 0; i < size(); ++i) state_.velocity[i] += factor * force[i];
+  for_each_particle([&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) state_.velocity[i] += factor * force[i];
+  });
 }
 
 void System::move(double duration) {
   if (frozen_) return;
   check();
+  for_each_particle([&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      state_.position[i] = box_.wrap(state_.position[i] + duration * state_.velocity[i]);
+    }
+  });
+  ++positions_version_;
   std::vector<std::uint32_t> lost;
   for (std::size_t i = 0; i < size(); ++i) {
-    state_.position[i] = box_.wrap(state_.position[i] + duration * state_.velocity[i]);
     if (!box_.contains(state_.position[i])) lost.push_back(state_.id[i]);
   }
-  ++positions_version_;
   // So far beyond the box that rounding leaves no image inside.
   if (!lost.empty()) throw StepFailure(FailureCause::non_finite, std::move(lost));
 }
@@ -105,15 +287,18 @@ void System::renew_conservative() {
   force_.assign(size(), Vector::Zero());
   potential_share_.assign(size(), 0.0);
   if (!fluid_.has_repulsion()) return;
-  for_each_pair([&](const PairList::Geometry& g) {
-    const Vector force = fluid_.repulsive_force(g.r) * g.e;
-    force_[g.i] += force;
-    force_[g.j] -= force;
-    const double share = 0.5 * fluid_.potential(g.r);
-    potential_share_[g.i] += share;
-    potential_share_[g.j] += share;
+  find_pairs();
+  const auto repulsion = [&](const auto& pair) {
+    const auto share = 0.5 * fluid_.potential(pair.r);
+    return Transfer{fluid_.repulsive_force(pair.r), share, share};
+  };
+  const PairKernel kernel = PairKernel::of(repulsion);
+  for_each_chunk([&](PairPass& pass, PairBlock&, std::size_t, std::size_t count) {
+    pass.geometry();
+    pass.run(kernel, 0, count);
   });
-  counters_.pair_evaluations += pairs_.size();
+  scatter_sums(force_, potential_share_);
+  count_visit(false, false);
 }
 
 const std::vector<Vector>& System::conservative_force() {
@@ -152,6 +337,7 @@ Vector System::momentum() const {
 
 void System::set_state(State state) {
   state_ = valid(box_, std::move(state));
+  set_threads(threads_.count());
   ++positions_version_;
 }
 

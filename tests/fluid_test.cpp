@@ -202,8 +202,8 @@ TEST(Repulsion, IsTheGradientOfThePotentialAndTheLaplacianItsDivergence) {
         derivative([&](double x) { return -x * x * fluid.repulsive_force(x); }, r) / (r * r);
     EXPECT_NEAR(fluid.potential_laplacian(r), flux, 1e-5 / r);
   }
-  EXPECT_EQ(fluid.repulsive_force(0), 15);
-  EXPECT_EQ(fluid.potential(0), 15 * 0.9 / 2);
+  EXPECT_EQ(fluid.repulsive_force(0.0), 15);
+  EXPECT_EQ(fluid.potential(0.0), 15 * 0.9 / 2);
   for (const double r : {0.9, 0.91, 5.0}) {
     EXPECT_EQ(fluid.repulsive_force(r), 0);
     EXPECT_EQ(fluid.potential(r), 0);

@@ -295,7 +295,7 @@ TEST(Pairs, HaveExactlyOneNeighbourEachAndLieAlongTheFirstAxis) {
         EXPECT_EQ(neighbours(fluid, box, state), std::vector<int>(particles, 1));
         System system(fluid, box, state, Noise(1, 0), true);
         std::size_t pairs = 0;
-        system.for_each_pair([&](const PairList::Geometry& g) {
+        system.for_each_pair([&](const System::Geometry& g) {
           EXPECT_EQ(g.i / 2, g.j / 2);
           EXPECT_NEAR(std::abs(g.e[0]), 1, 1e-12);
           EXPECT_NEAR(g.r, apart, 1e-12 * box.lengths.maxCoeff());

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
+#include <array>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/random/gamma_distribution.hpp>
 #include <boost/random/normal_distribution.hpp>
@@ -16,12 +16,12 @@
 #include <string>
 #include <vector>
 
-// Every statistical bound below is 6.5 standard errors (false-alarm rate 8e-11 a comparison) or a
-// quantile of chi^2 beyond 1e-10; about 200 comparisons in all.
+#include "model/lanes.hpp"
+#include "tests/noise_law.hpp"
+
+// Every statistical bound below has a false-alarm rate of at most 2e-10; about 200 comparisons.
 namespace driftless {
 namespace {
-
-constexpr double bound = 6.5;
 
 /// What a number is asked by; every field is part of its name.
 struct Request {
@@ -37,8 +37,11 @@ double draw(const Request& r) {
   Noise noise(r.seed, r.replica);
   noise.set_step(r.step);
   const bool friction = r.purpose == Purpose::friction;
-  const auto normals = noise.pair_normals(r.i, r.j, r.stage, friction, !friction);
-  return friction ? normals.friction : normals.heat;
+  const std::array<std::uint32_t, Lanes::count()> i = {r.i}, j = {r.j};
+  std::array<double, Lanes::count()> normal;
+  noise.pair_normals(1, i.data(), j.data(), r.stage, friction ? normal.data() : nullptr,
+                     friction ? nullptr : normal.data());
+  return normal[0];
 }
 
 // ---- One check of everything that is asked of the numbers, by name of what is broken. ----------
@@ -59,26 +62,6 @@ void check_moments(const std::vector<double>& x, Complaints& complaints) {
   if (!(std::abs(m2 - 1) < bound * std::sqrt(2 / n))) complaints.insert("variance");
   if (!(std::abs(m3) < bound * std::sqrt(15 / n))) complaints.insert("third moment");
   if (!(std::abs(m4 - 3) < bound * std::sqrt(96 / n))) complaints.insert("fourth moment");
-}
-
-/// chi^2 over bins of equal probability under the exact law.
-template <class Cumulative>
-bool has_law(const std::vector<double>& x, Cumulative&& cumulative) {
-  constexpr int bins = 256;
-  std::vector<double> count(bins, 0.0);
-  for (const double z : x) {
-    ++count[static_cast<std::size_t>(std::clamp(static_cast<int>(bins * cumulative(z)), 0, 255))];
-  }
-  const double expected = static_cast<double>(x.size()) / bins;
-  double chi_squared = 0;
-  for (const double c : count) chi_squared += (c - expected) * (c - expected) / expected;
-  const boost::math::chi_squared law(bins - 1);
-  return chi_squared < boost::math::quantile(boost::math::complement(law, 1e-10)) &&
-         chi_squared > boost::math::quantile(law, 1e-10);
-}
-
-bool is_normal(const std::vector<double>& x) {
-  return has_law(x, [](double z) { return boost::math::cdf(boost::math::normal(), z); });
 }
 
 /// Covariance of the numbers and of their squares between two neighbours in every direction.
@@ -194,7 +177,7 @@ TEST(NoiseFaults, AreSeen) {
 
 // ---- Exact properties. -------------------------------------------------------------------------
 
-TEST(Noise, DoesNotDependOnOtherPurposesOrderOrReader) {
+TEST(Noise, DoesNotDependOnTheOrderOfVisitsOrTheReader) {
   Noise noise(1, 2), other(1, 2);
   std::vector<Noise::PairNormals> both;
   for (std::uint32_t i = 0; i < 100; ++i) {
@@ -203,15 +186,9 @@ TEST(Noise, DoesNotDependOnOtherPurposesOrderOrReader) {
   }
   for (std::uint32_t i = 100; i-- > 0;) {
     other.set_step(i / 10);
-    const auto friction = other.pair_normals(i, i + 7, i % 3, true, false);
-    const auto heat = other.pair_normals(i, i + 7, i % 3, false, true);
-    const auto none = other.pair_normals(i, i + 7, i % 3, false, false);
-    EXPECT_EQ(friction.friction, both[i].friction);
-    EXPECT_EQ(heat.heat, both[i].heat);
-    EXPECT_EQ(friction.heat, 0);
-    EXPECT_EQ(heat.friction, 0);
-    EXPECT_EQ(none.friction, 0);
-    EXPECT_EQ(none.heat, 0);
+    const auto again = other.pair_normals(i, i + 7, i % 3, true, true);
+    EXPECT_EQ(again.friction, both[i].friction);
+    EXPECT_EQ(again.heat, both[i].heat);
   }
 }
 
@@ -301,18 +278,6 @@ TEST(NoiseStream, CopiesAreIndependentReadersOfTheSameNumbers) {
   EXPECT_EQ(stream(), again());
 }
 
-TEST(NoiseStream, IsNotTheNoiseOfAnyPair) {
-  const Noise noise(1, 0);
-  for (const auto purpose : {Purpose::initial_velocity, Purpose::initial_position}) {
-    auto stream = noise.particle_stream(5, purpose);
-    const double particle = boost::random::normal_distribution<double>()(stream);
-    for (std::uint32_t j = 0; j < 20; ++j) {
-      EXPECT_NE(noise.pair_normals(5, j, 0, true, true).friction, particle);
-      EXPECT_NE(noise.pair_normals(5, j, 0, true, true).heat, particle);
-    }
-  }
-}
-
 /// One variate for each of many particles.
 template <class Distribution>
 std::vector<double> variates(Purpose purpose, Distribution distribution) {
@@ -339,7 +304,7 @@ Moments moments(const std::vector<double>& x) {
 TEST(NoiseStream, FeedsTheDistributionsOfBoostAndOfTheStandardLibrary) {
   const double n = 200000;
   const auto uniform = variates(Purpose::initial_position, boost::random::uniform_01<double>());
-  EXPECT_TRUE(has_law(uniform, [](double x) { return x; }));
+  EXPECT_TRUE(is_uniform(uniform));
   EXPECT_TRUE(
       is_normal(variates(Purpose::initial_velocity, boost::random::normal_distribution<double>())));
   EXPECT_TRUE(is_normal(variates(Purpose::initial_velocity, std::normal_distribution<double>())));
@@ -357,14 +322,14 @@ TEST(NoiseStream, BothHalvesOfAllBlocksAreUniform) {
       x.push_back(static_cast<double>(word >> 11) * 0x1p-53);
     }
   }
-  EXPECT_TRUE(has_law(x, [](double z) { return z; }));
+  EXPECT_TRUE(is_uniform(x));
   std::vector<double> low;  // the low half of the words
   for (std::uint32_t id = 0; id < 100; ++id) {
     for (const auto word : words(id, Purpose::initial_energy, 0, 1000)) {
       low.push_back(static_cast<double>(word & 0xffffffffU) * 0x1p-32);
     }
   }
-  EXPECT_TRUE(has_law(low, [](double z) { return z; }));
+  EXPECT_TRUE(is_uniform(low));
 }
 
 // The known answers that Random123 publishes for philox4x32 with 10 rounds.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "tests/small_system.hpp"
 
@@ -82,6 +83,16 @@ State random_state(Uniform& uniform, const Box& box, std::size_t particles) {
   return state;
 }
 
+/// What the search finds, in the order of ids.
+std::vector<PairSearch::Found> found_in(PairSearch& search, const State& state) {
+  std::vector<PairSearch::Found> found;
+  search.find(state, [&](const PairSearch::Found& pair) { found.push_back(pair); });
+  const auto ids = [&](const auto& pair) { return std::pair(state.id[pair.i], state.id[pair.j]); };
+  std::sort(found.begin(), found.end(),
+            [&](const auto& a, const auto& b) { return ids(a) < ids(b); });
+  return found;
+}
+
 struct Scenery {
   const char* name;
   Vector smallest, largest;  ///< lengths of the box over the range
@@ -113,7 +124,7 @@ TEST(PairSearch, FindsWhatADoubleLoopFinds) {
       // The same object twice: nothing of the first configuration may stay.
       for (int again = 0; again < 2; ++again) {
         const State state = random_state(uniform, box, particles);
-        ASSERT_EQ(fault(search.find(state), box, range, state), "") << "repeat " << repeat;
+        ASSERT_EQ(fault(found_in(search, state), box, range, state), "") << "repeat " << repeat;
       }
     }
   }
@@ -124,7 +135,7 @@ TEST(PairSearch, ThatFindsNoNeighboursWouldBeNoticed) {
   const Box box{Vector::Constant(4)};
   const State state = random_state(uniform, box, 100);
   PairSearch search(box, 1, 100);
-  const auto found = search.find(state);
+  const auto found = found_in(search, state);
   ASSERT_EQ(fault(found, box, 1, state), "");
   ASSERT_GT(found.size(), 10U);
   for (std::size_t n = 0; n < found.size(); ++n) {
@@ -155,8 +166,8 @@ TEST(PairSearch, DoesNotDependOnTheOrderOfStorage) {
     permuted.id[n] = state.id[order[n]];
   }
   PairSearch one(box, 1, 150), two(box, 1, 150);
-  const auto& a = one.find(state);
-  const auto& b = two.find(permuted);
+  const auto a = found_in(one, state);
+  const auto b = found_in(two, permuted);
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t n = 0; n < a.size(); ++n) {
     EXPECT_EQ(state.id[a[n].i], permuted.id[b[n].i]);
@@ -174,69 +185,185 @@ TEST(PairSearch, FindsNothingWithoutARangeOrWithoutParticles) {
   Uniform uniform(6);
   const Box box{Vector::Constant(1)};
   const State state = random_state(uniform, box, 20);
-  EXPECT_TRUE(PairSearch(box, 0, 20).find(state).empty());
-  EXPECT_TRUE(PairSearch(box, 0.3, 0).find(State{}).empty());
-  EXPECT_TRUE(PairSearch(box, 0.3, 1).find(random_state(uniform, box, 1)).empty());
+  PairSearch no_range(box, 0, 20), nobody(box, 0.3, 0), alone(box, 0.3, 1);
+  EXPECT_TRUE(found_in(no_range, state).empty());
+  EXPECT_TRUE(found_in(nobody, State{}).empty());
+  EXPECT_TRUE(found_in(alone, random_state(uniform, box, 1)).empty());
 }
 
-TEST(PairList, GivesTheDirectionFromJToIAndTheWeights) {
+// ---- Order: groups of pairs stand for a sweep one after the other. ------------------------------
+
+/// A dense system in a box of some cells, and its pairs.
+struct Dense {
+  State state;
+  CellGrid cells;
+  PairBlocks blocks;
+
+  Dense(const Vector& lengths, std::size_t particles, unsigned threads, std::uint64_t seed = 8)
+      : cells(Box{lengths}, 1, particles), blocks(cells, 1, threads) {
+    Uniform uniform(seed);
+    state = random_state(uniform, Box{lengths}, particles);
+    cells.sort(state, Threads());
+    blocks.find(cells, Threads());
+    for (auto& block : blocks.all()) blocks.group(block);
+  }
+
+  /// The pairs by ids in the order of a sweep: colours, blocks, groups.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> order() const {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> all;
+    for (const auto& block : const_cast<PairBlocks&>(blocks).all()) add(block.groups.pairs, all);
+    return all;
+  }
+  void add(const PairIndices& pairs,
+           std::vector<std::pair<std::uint32_t, std::uint32_t>>& all) const {
+    for (std::size_t n = 0; n < pairs.size; ++n) {
+      all.emplace_back(cells.id()[pairs.i[n]], cells.id()[pairs.j[n]]);
+    }
+  }
+};
+
+/// Whether a particle is twice in a group.
+bool meets_itself(const PairGroups& groups) {
+  std::size_t from = 0;
+  for (const auto end : groups.end) {
+    std::set<std::uint32_t> seen;
+    for (; from < end; ++from) {
+      if (!seen.insert(groups.pairs.i[from]).second) return true;
+      if (!seen.insert(groups.pairs.j[from]).second) return true;
+    }
+  }
+  return false;
+}
+
+const Vector boxes[] = {{3.5, 3.5, 3.5}, {4, 4, 4}, {5.5, 4.2, 7.1}, {9, 3.3, 12.5}, {13, 13, 13}};
+
+TEST(PairGroups, HoldEveryPairOnceAndNoParticleTwice) {
+  for (const auto& lengths : boxes) {
+    for (const double density : {0.3, 3.0, 12.0}) {
+      Dense dense(lengths, static_cast<std::size_t>(density * lengths.prod()), 1);
+      auto grouped = dense.order();
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
+      for (auto& block : dense.blocks.all()) {
+        dense.add(block.found, found);
+        EXPECT_FALSE(meets_itself(block.groups));
+      }
+      std::sort(grouped.begin(), grouped.end());
+      std::sort(found.begin(), found.end());
+      EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
+      EXPECT_EQ(grouped, found);
+    }
+  }
+}
+
+TEST(PairGroups, ThatShareAParticleWouldBeNoticed) {
+  Dense dense(boxes[1], 200, 1);
+  PairGroups groups = dense.blocks.all()[0].groups;
+  ASSERT_FALSE(meets_itself(groups));
+  groups.pairs.i[1] = groups.pairs.j[0];
+  EXPECT_TRUE(meets_itself(groups));
+}
+
+TEST(PairBlocks, OfOneColourShareNoParticle) {
+  for (const auto& lengths : boxes) {
+    Dense dense(lengths, static_cast<std::size_t>(3 * lengths.prod()), 4);
+    for (std::size_t colour = 0; colour < dense.blocks.colours().size(); ++colour) {
+      std::vector<std::size_t> owner(dense.state.size(), 0);
+      for (std::size_t n = 0; n < dense.blocks.colours()[colour]; ++n) {
+        const auto& found = dense.blocks.block(colour, n).found;
+        for (std::size_t pair = 0; pair < found.size; ++pair) {
+          for (const auto particle : {found.i[pair], found.j[pair]}) {
+            EXPECT_TRUE(owner[particle] == 0 || owner[particle] == n + 1);
+            owner[particle] = n + 1;
+          }
+        }
+      }
+    }
+  }
+}
+
+/// For each particle the partners in the order in which they are met.
+std::vector<std::vector<std::uint32_t>> partners(const Dense& dense) {
+  std::vector<std::vector<std::uint32_t>> met(dense.state.size());
+  for (const auto& [i, j] : dense.order()) {
+    met[i].push_back(j);
+    met[j].push_back(i);
+  }
+  return met;
+}
+
+TEST(PairBlocks, MeetPairsInTheSameOrderForAnyNumberOfThreads) {
+  for (const auto& lengths : boxes) {
+    const auto particles = static_cast<std::size_t>(3 * lengths.prod());
+    const auto alone = partners(Dense(lengths, particles, 1));
+    for (const unsigned threads : {2U, 4U, 7U}) {
+      EXPECT_EQ(partners(Dense(lengths, particles, threads)), alone);
+    }
+    EXPECT_NE(partners(Dense(lengths, particles, 1, 9)), alone);
+  }
+}
+
+/// The order in which a particle meets its partners if pairs come by ascending ids.
+bool ascends(const PairGroups& groups, const CellGrid& cells) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> last(cells.particles(), {0, 0});
+  for (std::size_t n = 0; n < groups.pairs.size; ++n) {
+    const auto i = groups.pairs.i[n], j = groups.pairs.j[n];
+    const std::pair ids(cells.id()[i], cells.id()[j]);
+    if (last[i] > ids || last[j] > ids) return false;
+    last[i] = last[j] = ids;
+  }
+  return true;
+}
+
+TEST(PairGroups, ByIdsLetEveryParticleMeetItsPartnersInAscendingOrder) {
+  for (const auto& lengths : boxes) {
+    Dense dense(lengths, static_cast<std::size_t>(3 * lengths.prod()), 1);
+    const auto& groups = dense.blocks.by_ids(dense.cells);
+    EXPECT_EQ(groups.pairs.size, dense.blocks.pairs());
+    EXPECT_FALSE(meets_itself(groups));
+    EXPECT_TRUE(ascends(groups, dense.cells));
+    if (dense.cells.single()) {
+      EXPECT_TRUE(ascends(dense.blocks.all()[0].groups, dense.cells));
+    } else {
+      EXPECT_FALSE(ascends(dense.blocks.all()[0].groups, dense.cells));
+    }
+  }
+}
+
+// ---- What a system shows of its pairs. ----------------------------------------------------------
+
+TEST(SystemPairs, HaveTheDirectionFromJToIAndTheWeights) {
   Uniform uniform(7);
   const Fluid fluid(small_fluid({FrictionClosure::noise, HeatForm::temperature, true}, 1));
   const Box box = small_box();
   const State state = random_state(uniform, box, 60);
-  PairList pairs(box, fluid, 60);
-  pairs.update(state, fluid, 1);
-  ASSERT_GT(pairs.size(), 20U);
-  for (std::size_t n = 0; n < pairs.size(); ++n) {
-    const auto& g = pairs.geometry(n);
+  System system(fluid, box, state, Noise(1, 0));
+  std::size_t pairs = 0;
+  system.for_each_pair([&](const System::Geometry& g) {
+    ++pairs;
     EXPECT_LT(state.id[g.i], state.id[g.j]);
     EXPECT_NEAR(g.e.norm(), 1, 1e-14);
     // Walking from j along e for the distance r leads to i.
     const Vector end = state.position[g.j] + g.r * g.e;
     EXPECT_LT(box.minimum_image(end - state.position[g.i]).norm(), 1e-14);
-    EXPECT_EQ(g.w_friction, fluid.friction_weight(g.r));
-    EXPECT_EQ(g.w_heat, fluid.heat_weight(g.r));
-  }
+    EXPECT_NEAR(g.w_friction, fluid.friction_weight(g.r), 1e-15);
+    EXPECT_NEAR(g.w_heat, fluid.heat_weight(g.r), 1e-15);
+  });
+  EXPECT_GT(pairs, 20U);
 }
 
-TEST(PairList, LeavesOutParticlesInOnePlace) {
-  const Fluid fluid(small_fluid({}, 1));
+TEST(SystemPairs, LeaveOutParticlesInOnePlace) {
   State state;
   for (std::uint32_t i = 0; i < 3; ++i) {
     state.position.push_back(i < 2 ? Vector(1, 1, 1) : Vector(1.5, 1, 1));
+    state.velocity.push_back(Vector::Zero());
+    state.internal_energy.push_back(10);
     state.id.push_back(i);
   }
-  PairList pairs(small_box(), fluid, 3);
-  pairs.update(state, fluid, 1);
-  EXPECT_EQ(pairs.size(), 2U);  // both with the third
-}
-
-TEST(PairList, RenewsGeometryWithPositionsAndNoiseWithStepAndStage) {
-  const Fluid fluid(small_fluid({FrictionClosure::noise, HeatForm::temperature}, 1));
-  State state = small_state(fluid.parameters());
-  PairList pairs(small_box(), fluid, state.size());
-  Noise noise(1, 0);
-  pairs.update(state, fluid, 1);
-  const auto first = pairs.draw(state, fluid, noise, 0);
-  EXPECT_GT(first, pairs.size());
-  EXPECT_LE(first, 2 * pairs.size());
-  EXPECT_EQ(pairs.draw(state, fluid, noise, 0), 0U);
-  const double number = pairs.normals(0).friction;
-  EXPECT_EQ(pairs.draw(state, fluid, noise, 1), first);
-  EXPECT_NE(pairs.normals(0).friction, number);
-  EXPECT_EQ(pairs.draw(state, fluid, noise, 0), first);
-  EXPECT_EQ(pairs.normals(0).friction, number);
-  noise.set_step(1);
-  EXPECT_EQ(pairs.draw(state, fluid, noise, 0), first);
-  EXPECT_NE(pairs.normals(0).friction, number);
-  const double r = pairs.geometry(0).r;
-  state.position[0] += Vector(0.01, 0, 0);
-  state.position[1] -= Vector(0, 0.01, 0);
-  pairs.update(state, fluid, 1);  // the same version: the same geometry
-  EXPECT_EQ(pairs.geometry(0).r, r);
-  pairs.update(state, fluid, 2);
-  EXPECT_NE(pairs.geometry(0).r, r);
-  EXPECT_GT(pairs.draw(state, fluid, noise, 0), 0U);  // the pairs may be others
+  System system(Fluid(small_fluid({.potential = true}, 1)), small_box(), state, Noise(1, 0));
+  std::size_t pairs = 0;
+  system.for_each_pair([&](const System::Geometry&) { ++pairs; });
+  EXPECT_EQ(pairs, 2U);  // both with the third
+  for (const auto& force : system.conservative_force()) EXPECT_TRUE(force.allFinite());
 }
 
 }  // namespace

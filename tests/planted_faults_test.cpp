@@ -226,7 +226,7 @@ TEST(PlantedFaults, AParticlesOwnKineticEnergyIsNotGalilean) {
 TEST(PlantedFaults, StepsTooLargeForTheirCopies) {
   const auto bench = small_capacity(FrictionClosure::noise, HeatForm::inverse_temperature);
   Schedule run = schedule(bench);
-  run.dt *= 4;
+  run.dt *= 6;
   run.ensembles = 4;
   EXPECT_FALSE(few_failures(climb(bench, registered("shardlow-s1"), run), 0.06));
 }

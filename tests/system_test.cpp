@@ -48,8 +48,7 @@ Pair<double> pair_by_hand(const Fluid& fluid, const State& s, std::size_t i, std
   const Vector apart = small_box().minimum_image(s.position[i] - s.position[j]);
   const double r = apart.norm();
   e = apart / r;
-  const bool heat = r < 0.95;
-  const auto normals = noise.pair_normals(s.id[i], s.id[j], stage, true, heat);
+  const auto normals = noise.pair_normals(s.id[i], s.id[j], stage, true, true);
   return {r,
           fluid.friction_weight(r),
           fluid.heat_weight(r),
@@ -61,11 +60,11 @@ Pair<double> pair_by_hand(const Fluid& fluid, const State& s, std::size_t i, std
 }
 
 /// A kernel in which everything that a pair sees leaves its own trace, with small changes.
-Transfer<double> everything(const Pair<double>& p) {
-  return {0.01 * (p.v + 2 * p.noise + p.r * p.u_i - p.w_heat * p.u_j),
-          0.01 * (p.heat_noise + p.u_i * p.w_friction + p.v * p.u_j),
-          0.02 * (p.noise - p.v * p.u_i + p.w_heat)};
-}
+constexpr auto everything = [](const auto& p) {
+  return Transfer{0.01 * (p.v + 2 * p.noise + p.r * p.u_i - p.w_heat * p.u_j),
+                  0.01 * (p.heat_noise + p.u_i * p.w_friction + p.v * p.u_j),
+                  0.02 * (p.noise - p.v * p.u_i + p.w_heat)};
+};
 
 TEST(Accumulate, SumsTheExchangesOfAllPairsFromTheStateAsItStands) {
   System system = small_system();
@@ -450,37 +449,44 @@ TEST(Counters, OfAFluidWithoutTermsStayAtZero) {
   EXPECT_EQ(system.potential_energy(), 0);
 }
 
-TEST(Counters, CountOneNumberWherePairsAreBeyondTheRangeOfTheOtherTerm) {
-  auto f = small_fluid({FrictionClosure::noise, HeatForm::temperature}, 1);
-  f.heat_range = 0.8;
-  System system(Fluid(f), small_box(), small_state(f), Noise(1, 1));
+TEST(Counters, CountTheNumbersOfEveryTermThatFluctuates) {
   Exchange total;
-  std::uint64_t conducting = 0;
-  system.accumulate(
-      [&](const Pair<double>& pair) {
-        conducting += pair.w_heat > 0 ? 1 : 0;
-        EXPECT_EQ(pair.heat_noise != 0, pair.w_heat > 0);
-        return Transfer<double>{};
-      },
-      total);
-  EXPECT_GT(conducting, 0U);
-  EXPECT_EQ(system.counters().random_numbers, system.counters().pair_evaluations + conducting);
+  for (const auto heat : {HeatForm::none, HeatForm::temperature}) {
+    for (const double boltzmann : {0.0, 1.0}) {
+      const auto f = small_fluid({FrictionClosure::noise, heat}, boltzmann);
+      System system(Fluid(f), small_box(), small_state(f), Noise(1, 1));
+      system.accumulate([](const auto& pair) { return Transfer{0 * pair.v}; }, total);
+      const std::uint64_t terms = boltzmann == 0 ? 0 : heat == HeatForm::none ? 1 : 2;
+      EXPECT_GT(system.counters().pair_evaluations, 0U);
+      EXPECT_EQ(system.counters().random_numbers, terms * system.counters().pair_evaluations);
+    }
+  }
 }
 
-TEST(Noise, OfASystemIsDrawnOncePerStepAndStage) {
+TEST(Noise, OfTrialStepsIsDrawnOncePerStepStageAndPositions) {
   System system = small_system();
   Exchange total;
   const auto draw = [&](unsigned stage) {
     const auto before = system.counters().random_numbers;
-    system.accumulate(everything, total, stage);
+    system.accumulate(
+        system.motion(),
+        [](const auto& start, const auto& end) { return Transfer{start.noise + end.heat_noise}; },
+        total, stage);
     return system.counters().random_numbers - before;
   };
   const auto numbers = draw(0);
+  const auto first = total.momentum;
   EXPECT_GT(numbers, 0U);
   EXPECT_EQ(draw(0), 0U);
+  EXPECT_EQ(total.momentum, first);
   EXPECT_EQ(draw(1), numbers);
+  EXPECT_NE(total.momentum, first);
   system.set_step(1);
   EXPECT_EQ(draw(1), numbers);
+  const auto before_move = total.momentum;
+  system.move(0.01);
+  EXPECT_GT(draw(1), 0U);
+  EXPECT_NE(total.momentum, before_move);
 }
 
 // ---- What a system refuses. --------------------------------------------------------------------

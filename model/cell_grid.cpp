@@ -1,0 +1,92 @@
+#include "model/cell_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "model/lanes.hpp"
+
+namespace driftless {
+
+CellGrid::CellGrid(const Box& box, double range, std::size_t particles) : box_(box) {
+  if (box.lengths.minCoeff() < 2 * range) {
+    std::ostringstream message;
+    message << "the box's shortest side " << box.lengths.minCoeff()
+            << " is below twice the range of the interaction " << range;
+    throw std::invalid_argument(message.str());
+  }
+  // No more than a few cells per particle, however dilute the system.
+  const double most = std::max(3.0, 2 * std::cbrt(static_cast<double>(particles)));
+  for (int axis = 0; axis < 3; ++axis) {
+    const double fit = range > 0 ? box.lengths[axis] / range : 1.0;
+    count_[axis] = static_cast<int>(std::min(fit, most));
+  }
+  // Below three cells a neighbour would be met twice; below four no two groups of cells are apart.
+  single_ = count_.minCoeff() < 3 || count_.maxCoeff() < 4;
+  if (single_) count_ = Eigen::Vector3i::Ones();
+}
+
+void CellGrid::sort(const State& state, const Threads& threads) {
+  // Vectors of single precision are read beyond the end.
+  const std::size_t padded = state.size() + 2 * Lanes::count();
+  cell_.resize(state.size());
+  entry_.resize(state.size());
+  place_.resize(state.size());
+  id_.resize(state.size());
+  for (auto& values : position_) values.resize(padded);
+  for (auto& values : rough_) values.resize(padded);
+  assign(state, threads);
+  order(state, threads);
+  gather(state, threads);
+}
+
+void CellGrid::assign(const State& state, const Threads& threads) {
+  if (single_) {
+    std::fill(cell_.begin(), cell_.end(), 0);
+    return;
+  }
+  const Eigen::Array3d scale = count_.cast<double>().array() / box_.lengths.array();
+  threads.ranges(state.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Eigen::Array3i cell = (state.position[i].array() * scale).cast<int>();
+      // Rounding may lead out of the last cell.
+      const Eigen::Array3i inside = cell.min(count_.array() - 1);
+      cell_[i] = static_cast<std::uint32_t>(index(inside[0], inside[1], inside[2]));
+    }
+  });
+}
+
+void CellGrid::order(const State& state, const Threads& threads) {
+  const auto cells = static_cast<std::size_t>(count_.prod());
+  begin_.assign(cells + 1, 0);
+  for (const auto cell : cell_) ++begin_[cell + 1];
+  for (std::size_t c = 1; c <= cells; ++c) begin_[c] += begin_[c - 1];
+  next_.assign(begin_.begin(), begin_.end() - 1);
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    entry_[next_[cell_[i]]++] = (std::uint64_t{state.id[i]} << 32) | i;
+  }
+  threads.ranges(cells, [&](std::size_t first, std::size_t last) {
+    for (std::size_t c = first; c < last; ++c) {
+      const auto from = entry_.begin() + begin_[c], to = entry_.begin() + begin_[c + 1];
+      if (!std::is_sorted(from, to)) std::sort(from, to);
+    }
+  });
+}
+
+void CellGrid::gather(const State& state, const Threads& threads) {
+  threads.ranges(state.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const auto place = static_cast<std::uint32_t>(entry_[n]);
+      place_[n] = place;
+      id_[n] = static_cast<std::uint32_t>(entry_[n] >> 32);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double x = state.position[place][static_cast<Eigen::Index>(axis)];
+        position_[axis][n] = x;
+        rough_[axis][n] = static_cast<float>(x);
+      }
+    }
+  });
+}
+
+}  // namespace driftless

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "model/state.hpp"
+#include "model/threads.hpp"
+
+namespace driftless {
+
+/// A particle's velocity and internal energy, or what it receives of momentum and energy.
+struct alignas(32) Quadruple {
+  double x = 0, y = 0, z = 0, energy = 0;
+
+  Quadruple& operator+=(const Quadruple& other) {
+    x += other.x, y += other.y, z += other.z, energy += other.energy;
+    return *this;
+  }
+};
+
+/// A box cut into cells of at least the range of the interaction, and its particles in their order:
+/// cell after cell, by ids within a cell. A box shorter than four cells is one cell, whose
+/// particles are in the order of ids.
+class CellGrid {
+ public:
+  /// Throws std::invalid_argument if the box is shorter than twice the range.
+  CellGrid(const Box& box, double range, std::size_t particles);
+
+  bool single() const { return single_; }
+  const Eigen::Vector3i& count() const { return count_; }
+  const Box& box() const { return box_; }
+  /// Particles of cell c are begin(c) to begin(c + 1), x fastest.
+  std::uint32_t begin(std::size_t cell) const { return begin_[cell]; }
+  std::size_t index(int x, int y, int z) const {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(count_[1]) +
+            static_cast<std::size_t>(y)) *
+               static_cast<std::size_t>(count_[0]) +
+           static_cast<std::size_t>(x);
+  }
+  std::size_t particles() const { return place_.size(); }
+
+  /// Sorts the particles anew.
+  void sort(const State& state, const Threads& threads);
+
+  /// The particles in the order of cells; single precision carries `margin` more than the range.
+  const std::vector<std::uint32_t>& place() const { return place_; }  ///< in the state's storage
+  const std::vector<std::uint32_t>& id() const { return id_; }
+  const std::array<std::vector<double>, 3>& position() const { return position_; }
+  const std::array<std::vector<float>, 3>& rough_position() const { return rough_; }
+  double rough_margin() const { return 4e-7 * box_.lengths.maxCoeff(); }
+
+ private:
+  void assign(const State& state, const Threads& threads);
+  void order(const State& state, const Threads& threads);
+  void gather(const State& state, const Threads& threads);
+
+  Box box_;
+  bool single_ = false;
+  Eigen::Vector3i count_;
+  std::vector<std::uint32_t> begin_, next_;
+  std::vector<std::uint32_t> cell_;   ///< of each place in storage
+  std::vector<std::uint64_t> entry_;  ///< id and place in storage, sorted
+  std::vector<std::uint32_t> place_, id_;
+  std::array<std::vector<double>, 3> position_;
+  std::array<std::vector<float>, 3> rough_;
+};
+
+}  // namespace driftless

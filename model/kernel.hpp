@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+#include <vector>
+
+#include "model/lanes.hpp"
+#include "model/pair.hpp"
+
+namespace driftless {
+
+/// What kernels see of many pairs and what they answer, quantity by quantity. The arrays of one
+/// object are parts of one piece of memory, each padded to whole lanes of any processor.
+struct PairArrays {
+  double *r, *w_friction, *w_heat, *v, *u_i, *u_j, *noise, *heat_noise, *uniform, *heat_uniform;
+  double *trial_v, *trial_u_i, *trial_u_j, *trial_dv_i, *trial_dv_j;
+  double *momentum, *energy_i, *energy_j;  ///< the answer
+  double *e_x, *e_y, *e_z;
+
+  /// The pair, or the lanes of pairs, from place n on.
+  template <class V>
+  Pair<V> pair(std::size_t n) const {
+    return {load<V>(r + n),           load<V>(w_friction + n), load<V>(w_heat + n),
+            load<V>(v + n),           load<V>(u_i + n),        load<V>(u_j + n),
+            load<V>(noise + n),       load<V>(heat_noise + n), load<V>(uniform + n),
+            load<V>(heat_uniform + n)};
+  }
+  template <class V>
+  TrialPair<V> trial_pair(std::size_t n) const {
+    TrialPair<V> end{pair<V>(n), load<V>(trial_dv_i + n), load<V>(trial_dv_j + n)};
+    end.v = load<V>(trial_v + n);
+    end.u_i = load<V>(trial_u_i + n);
+    end.u_j = load<V>(trial_u_j + n);
+    return end;
+  }
+  template <class V>
+  void answer(std::size_t n, const Transfer<V>& transfer) const {
+    store(transfer.momentum, momentum + n);
+    store(transfer.energy_i, energy_i + n);
+    store(transfer.energy_j, energy_j + n);
+  }
+
+ private:
+  template <class V>
+  static V load(const double* from) {
+    if constexpr (std::is_same_v<V, double>) {
+      return *from;
+    } else {
+      return V::load(from);
+    }
+  }
+  static void store(double value, double* to) { *to = value; }
+  static void store(const Lanes& values, double* to) { values.store(to); }
+};
+
+/// A kernel of any type, run over arrays of pairs: in lanes, or one by one if it takes no lanes.
+class PairKernel {
+ public:
+  /// kernel(const Pair<V>&) -> Transfer<V>
+  template <class Kernel>
+  static PairKernel of(const Kernel& kernel) {
+    return {&kernel, run_all<Kernel>};
+  }
+  /// kernel(const Pair<V>& start, const TrialPair<V>& end) -> Transfer<V>
+  template <class Kernel>
+  static PairKernel of_trial(const Kernel& kernel) {
+    return {&kernel, run_all_trials<Kernel>};
+  }
+
+  /// The answers for the pairs [from, to); to whole lanes beyond.
+  void run(const PairArrays& arrays, std::size_t from, std::size_t to) const {
+    run_(kernel_, arrays, from, to);
+  }
+
+ private:
+  using Run = void (*)(const void*, const PairArrays&, std::size_t, std::size_t);
+  PairKernel(const void* kernel, Run how) : kernel_(kernel), run_(how) {}
+  template <class V>
+  static constexpr std::size_t width() {
+    if constexpr (std::is_same_v<V, double>) {
+      return 1;
+    } else {
+      return V::count();
+    }
+  }
+
+  // Flattened: a kernel is made of small functions, and the loop around it is hot.
+  template <class Kernel>
+  [[gnu::flatten]] static void run_all(const void* called, const PairArrays& arrays,
+                                       std::size_t from, std::size_t to) {
+    const auto& kernel = *static_cast<const Kernel*>(called);
+    using V = std::conditional_t<std::is_invocable_v<Kernel, Pair<Lanes>>, Lanes, double>;
+    for (std::size_t n = from; n < to; n += width<V>()) {
+      arrays.answer<V>(n, kernel(arrays.pair<V>(n)));
+    }
+  }
+  template <class Kernel>
+  [[gnu::flatten]] static void run_all_trials(const void* called, const PairArrays& arrays,
+                                              std::size_t from, std::size_t to) {
+    const auto& kernel = *static_cast<const Kernel*>(called);
+    using V = std::conditional_t<std::is_invocable_v<Kernel, Pair<Lanes>, TrialPair<Lanes>>, Lanes,
+                                 double>;
+    for (std::size_t n = from; n < to; n += width<V>()) {
+      arrays.answer<V>(n, kernel(arrays.pair<V>(n), arrays.trial_pair<V>(n)));
+    }
+  }
+
+  const void* kernel_;
+  Run run_;
+};
+
+}  // namespace driftless

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "model/cell_grid.hpp"
+#include "model/fluid.hpp"
+#include "model/kernel.hpp"
+#include "model/noise.hpp"
+#include "model/pairs.hpp"
+
+namespace driftless {
+
+/// What a pass over pairs reads and writes, in the order of cells.
+struct PassParticles {
+  const Quadruple* motion = nullptr;  ///< velocities and energies that the pairs see
+  const Quadruple* trial = nullptr;   ///< at the trial end of the step
+  const double* energy = nullptr;     ///< energies that the pairs see, every fourth of these
+  Quadruple* result = nullptr;        ///< sums of what is exchanged, or the motion itself
+};
+
+/// One thread's way over pairs, a short pass for each thing to be done: geometry and weights from
+/// positions, noise from ids, motion of the particles, the kernel, and back to the particles.
+class PairPass {
+ public:
+  /// What the passes below speak of: these pairs of this fluid from `first` on.
+  void take(const Fluid& fluid, const CellGrid& cells, const PairIndices& pairs, std::size_t first,
+            std::size_t count);
+
+  void geometry();
+  void draw_normals(const Noise& noise, unsigned stage);
+  void draw_uniforms(const Noise& noise, unsigned stage);
+  void draw_no_uniforms();
+  /// Normals from and to memory that holds those of friction and `apart` further those of heat.
+  void recall_normals(const double* kept, std::size_t apart);
+  void keep_normals(double* kept, std::size_t apart) const;
+  void motion(const PassParticles& particles, std::size_t from, std::size_t to);
+  void trial(const PassParticles& particles);
+  void run(const PairKernel& kernel, std::size_t from, std::size_t to) {
+    kernel.run(arrays_, from, to);
+  }
+  /// Adds what the pairs exchange to the particles' sums, one pair after the other.
+  void add(Quadruple* sums);
+  /// Changes velocities and energies by what pairs exchange, no particle twice among them; false if
+  /// an energy is then not above zero.
+  bool apply(const PassParticles& particles, std::size_t from, std::size_t to);
+
+  const PairArrays& arrays() const { return arrays_; }
+
+ private:
+  void reserve(std::size_t pairs);
+  void look_up_ids();
+
+  const Fluid* fluid_ = nullptr;
+  const CellGrid* cells_ = nullptr;
+  const std::uint32_t *i_ = nullptr, *j_ = nullptr;
+  std::size_t count_ = 0;
+  std::size_t capacity_ = 0;
+  bool has_uniforms_ = false;
+  std::vector<double> memory_;
+  PairArrays arrays_{};
+  std::vector<std::uint32_t> id_i_, id_j_;
+  std::vector<Quadruple> to_i_, to_j_;
+};
+
+}  // namespace driftless
