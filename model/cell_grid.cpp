@@ -34,7 +34,7 @@ void CellGrid::sort(const State& state, const Threads& threads) {
   entry_.resize(state.size());
   place_.resize(state.size());
   id_.resize(state.size());
-  for (auto& values : position_) values.resize(padded);
+  position_.resize(padded);
   for (auto& values : rough_) values.resize(padded);
   assign(state, threads);
   order(state, threads);
@@ -80,10 +80,10 @@ void CellGrid::gather(const State& state, const Threads& threads) {
       const auto place = static_cast<std::uint32_t>(entry_[n]);
       place_[n] = place;
       id_[n] = static_cast<std::uint32_t>(entry_[n] >> 32);
+      const Vector& position = state.position[place];
+      position_[n] = {position[0], position[1], position[2], 0};
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double x = state.position[place][static_cast<Eigen::Index>(axis)];
-        position_[axis][n] = x;
-        rough_[axis][n] = static_cast<float>(x);
+        rough_[axis][n] = static_cast<float>(position[static_cast<Eigen::Index>(axis)]);
       }
     }
   });

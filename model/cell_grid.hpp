@@ -9,7 +9,8 @@
 
 namespace driftless {
 
-/// A particle's velocity and internal energy, or what it receives of momentum and energy.
+/// A particle's position, or its velocity and internal energy, or what it receives of momentum and
+/// energy.
 struct alignas(32) Quadruple {
   double x = 0, y = 0, z = 0, energy = 0;
 
@@ -46,7 +47,7 @@ class CellGrid {
   /// The particles in the order of cells; single precision carries `margin` more than the range.
   const std::vector<std::uint32_t>& place() const { return place_; }  ///< in the state's storage
   const std::vector<std::uint32_t>& id() const { return id_; }
-  const std::array<std::vector<double>, 3>& position() const { return position_; }
+  const std::vector<Quadruple>& position() const { return position_; }
   const std::array<std::vector<float>, 3>& rough_position() const { return rough_; }
   double rough_margin() const { return 4e-7 * box_.lengths.maxCoeff(); }
 
@@ -62,7 +63,7 @@ class CellGrid {
   std::vector<std::uint32_t> cell_;   ///< of each place in storage
   std::vector<std::uint64_t> entry_;  ///< id and place in storage, sorted
   std::vector<std::uint32_t> place_, id_;
-  std::array<std::vector<double>, 3> position_;
+  std::vector<Quadruple> position_;
   std::array<std::vector<float>, 3> rough_;
 };
 

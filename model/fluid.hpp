@@ -148,11 +148,13 @@ class Fluid {
   FrictionLaw<V> friction(const Pair<V>& pair) const {
     const auto& f = parameters_;
     const V theta_i = temperature(pair.u_i), theta_j = temperature(pair.u_j);
-    const V mean = mean_temperature(pair.u_i, pair.u_j);
     const V zeta_0 = f.friction * pair.w_friction;
     if (f.friction_closure == FrictionClosure::noise) {
-      return {zeta_0 * f.temperature / mean, 2 * f.boltzmann * zeta_0 * f.temperature, V(0)};
+      const V inverse_mean = 0.5 * (theta_i + theta_j) * inverse_product(theta_i, theta_j);
+      return {zeta_0 * f.temperature * inverse_mean, 2 * f.boltzmann * zeta_0 * f.temperature,
+              V(0)};
     }
+    const V mean = mean_temperature(pair.u_i, pair.u_j);
     const V slope = mean * mean *
                     (1 / (heat_capacity(pair.u_i) * theta_i * theta_i) +
                      1 / (heat_capacity(pair.u_j) * theta_j * theta_j));
@@ -179,7 +181,7 @@ class Fluid {
     const V theta_i = temperature(pair.u_i), theta_j = temperature(pair.u_j);
     const V coefficient = f.conduction * pair.w_heat;
     if (f.heat_form == HeatForm::inverse_temperature) {
-      return {coefficient * (theta_j - theta_i) / (theta_i * theta_j),
+      return {coefficient * (theta_j - theta_i) * inverse_product(theta_i, theta_j),
               2 * f.boltzmann * coefficient, V(0)};
     }
     return {coefficient * (theta_j - theta_i), 2 * f.boltzmann * coefficient * theta_i * theta_j,
@@ -205,6 +207,11 @@ class Fluid {
   }
 
  private:
+  /// The one division that friction and conduction share.
+  template <class V>
+  static V inverse_product(V theta_i, V theta_j) {
+    return 1 / (theta_i * theta_j);
+  }
   /// 1 - r/r_c, 0 beyond the range.
   template <class V>
   static V depth(V distance, double range) {

@@ -53,6 +53,8 @@ class Lanes {
   friend Lanes operator-(Lanes a, Lanes b) { return hwy::HWY_NAMESPACE::Sub(a.raw_, b.raw_); }
   friend Lanes operator*(Lanes a, Lanes b) { return hwy::HWY_NAMESPACE::Mul(a.raw_, b.raw_); }
   friend Lanes operator/(Lanes a, Lanes b) { return hwy::HWY_NAMESPACE::Div(a.raw_, b.raw_); }
+  /// One division for all lanes, and with constants one for all pairs.
+  friend Lanes operator/(Lanes a, double b) { return a * Lanes(1 / b); }
   friend Lanes operator-(Lanes a) { return hwy::HWY_NAMESPACE::Neg(a.raw_); }
   Lanes& operator+=(Lanes other) { return *this = *this + other; }
   Lanes& operator-=(Lanes other) { return *this = *this - other; }

@@ -21,24 +21,56 @@ using Index = decltype(load_indices(nullptr));
 
 Lanes gather(const double* base, Index index) { return hn::GatherIndex(Doubles(), base, index); }
 
-/// A quantity of a particle's four.
-const double* component(const Quadruple* particles, std::size_t n) { return &particles->x + n; }
-
 /// `count` brought up to whole lanes.
 std::size_t padded(std::size_t count) {
   return (count + Lanes::count() - 1) / Lanes::count() * Lanes::count();
 }
 
-struct Triple {
-  Lanes x, y, z;
+/// The four quantities of as many particles as there are lanes.
+struct FourLanes {
+  Lanes x, y, z, energy;
 };
 
-Triple velocity(const Quadruple* particles, Index four_index) {
-  return {gather(component(particles, 0), four_index), gather(component(particles, 1), four_index),
-          gather(component(particles, 2), four_index)};
+/// Particles are fetched whole and turned in registers: a particle's four lie side by side.
+HWY_INLINE FourLanes fetch(const Quadruple* particles, const std::uint32_t* index) {
+  constexpr std::size_t lanes = Lanes::count();
+  const Doubles doubles;
+  alignas(64) double side_by_side[4 * lanes];
+  if constexpr (lanes >= 8) {
+    const hn::Half<Doubles> half;
+    for (std::size_t n = 0; n < lanes; n += 2) {
+      const auto low = hn::LoadU(half, &particles[index[n]].x);
+      const auto high = hn::LoadU(half, &particles[index[n + 1]].x);
+      hn::Store(hn::Combine(doubles, high, low), doubles, side_by_side + 4 * n);
+    }
+  } else {
+    for (std::size_t n = 0; n < lanes; ++n) {
+      for (std::size_t part = 0; part < 4; part += lanes) {
+        hn::StoreU(hn::LoadU(doubles, &particles[index[n]].x + part), doubles,
+                   side_by_side + 4 * n + part);
+      }
+    }
+  }
+  Lanes::Raw x, y, z, energy;
+  hn::LoadInterleaved4(doubles, side_by_side, x, y, z, energy);
+  return {x, y, z, energy};
+}
+
+/// The opposite: the lanes' particles side by side.
+HWY_INLINE void turn(const FourLanes& lanes, Quadruple* particles) {
+  hn::StoreInterleaved4(lanes.x.raw(), lanes.y.raw(), lanes.z.raw(), lanes.energy.raw(), Doubles(),
+                        &particles->x);
 }
 
 }  // namespace
+
+PassSeconds& PassSeconds::operator+=(const PassSeconds& other) {
+  search += other.search;
+  noise += other.noise;
+  arithmetic += other.arithmetic;
+  scatter += other.scatter;
+  return *this;
+}
 
 void PairPass::reserve(std::size_t pairs) {
   if (pairs <= capacity_) return;
@@ -77,29 +109,27 @@ void PairPass::take(const Fluid& fluid, const CellGrid& cells, const PairIndices
 }
 
 void PairPass::geometry() {
-  const auto& position = cells_->position();
+  const PassClock clock(part(&PassSeconds::arithmetic));
+  const Quadruple* const position = cells_->position().data();
   const Vector& length = cells_->box().lengths;
-  double* const e[3] = {arrays_.e_x, arrays_.e_y, arrays_.e_z};
   const bool friction = fluid_->has_friction(), heat = fluid_->has_conduction();
+  const auto nearest_image = [](Lanes difference, double side) {
+    const Lanes images = hn::Round((difference / side).raw());
+    return difference - images * side;
+  };
   for (std::size_t n = 0; n < count_; n += Lanes::count()) {
-    const auto i = load_indices(i_ + n), j = load_indices(j_ + n);
-    Lanes difference[3], squared = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double side = length[static_cast<Eigen::Index>(axis)];
-      const Lanes d = gather(position[axis].data(), i) - gather(position[axis].data(), j);
-      const Lanes images = hn::Round((d * (1 / side)).raw());
-      difference[axis] = d - images * side;
-      squared += difference[axis] * difference[axis];
-    }
-    const Lanes r = sqrt(squared);
+    const auto i = fetch(position, i_ + n), j = fetch(position, j_ + n);
+    const Lanes x = nearest_image(i.x - j.x, length[0]), y = nearest_image(i.y - j.y, length[1]),
+                z = nearest_image(i.z - j.z, length[2]);
+    const Lanes r = sqrt(x * x + y * y + z * z);
     const auto apart = r > smallest_distance;
-    const Lanes inverse = select(apart, 1 / r, 0);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      (difference[axis] * inverse).store(e[axis] + n);
-    }
+    const Lanes inverse = select(apart, 1.0 / r, 0.0);
+    (x * inverse).store(arrays_.e_x + n);
+    (y * inverse).store(arrays_.e_y + n);
+    (z * inverse).store(arrays_.e_z + n);
     r.store(arrays_.r + n);
-    if (friction) select(apart, fluid_->friction_weight(r), 0).store(arrays_.w_friction + n);
-    if (heat) select(apart, fluid_->heat_weight(r), 0).store(arrays_.w_heat + n);
+    if (friction) select(apart, fluid_->friction_weight(r), 0.0).store(arrays_.w_friction + n);
+    if (heat) select(apart, fluid_->heat_weight(r), 0.0).store(arrays_.w_heat + n);
   }
 }
 
@@ -110,6 +140,7 @@ void PairPass::look_up_ids() {
 }
 
 void PairPass::draw_normals(const Noise& noise, unsigned stage) {
+  const PassClock clock(part(&PassSeconds::noise));
   if (!fluid_->fluctuates()) {
     std::fill_n(arrays_.noise, padded(count_), 0.0);
     std::fill_n(arrays_.heat_noise, padded(count_), 0.0);
@@ -122,6 +153,7 @@ void PairPass::draw_normals(const Noise& noise, unsigned stage) {
 }
 
 void PairPass::draw_uniforms(const Noise& noise, unsigned stage) {
+  const PassClock clock(part(&PassSeconds::noise));
   look_up_ids();
   noise.pair_uniforms(count_, id_i_.data(), id_j_.data(), stage, arrays_.uniform,
                       arrays_.heat_uniform);
@@ -146,50 +178,51 @@ void PairPass::keep_normals(double* kept, std::size_t apart) const {
 }
 
 void PairPass::motion(const PassParticles& particles, std::size_t from, std::size_t to) {
-  const double* energy = particles.energy;
+  const PassClock clock(part(&PassSeconds::arithmetic));
   for (std::size_t n = from; n < to; n += Lanes::count()) {
-    const auto i = hn::ShiftLeft<2>(load_indices(i_ + n));
-    const auto j = hn::ShiftLeft<2>(load_indices(j_ + n));
-    const auto v_i = velocity(particles.motion, i), v_j = velocity(particles.motion, j);
-    const Lanes v = (v_i.x - v_j.x) * Lanes::load(arrays_.e_x + n) +
-                    (v_i.y - v_j.y) * Lanes::load(arrays_.e_y + n) +
-                    (v_i.z - v_j.z) * Lanes::load(arrays_.e_z + n);
+    const auto of_i = fetch(particles.motion, i_ + n), of_j = fetch(particles.motion, j_ + n);
+    const Lanes v = (of_i.x - of_j.x) * Lanes::load(arrays_.e_x + n) +
+                    (of_i.y - of_j.y) * Lanes::load(arrays_.e_y + n) +
+                    (of_i.z - of_j.z) * Lanes::load(arrays_.e_z + n);
     v.store(arrays_.v + n);
-    gather(energy, i).store(arrays_.u_i + n);
-    gather(energy, j).store(arrays_.u_j + n);
+    of_i.energy.store(arrays_.u_i + n);
+    of_j.energy.store(arrays_.u_j + n);
+  }
+  if (!particles.energy) return;
+  for (std::size_t n = from; n < to; n += Lanes::count()) {
+    fetch(particles.energy, i_ + n).energy.store(arrays_.u_i + n);
+    fetch(particles.energy, j_ + n).energy.store(arrays_.u_j + n);
   }
 }
 
 void PairPass::trial(const PassParticles& particles) {
+  const PassClock clock(part(&PassSeconds::arithmetic));
   for (std::size_t n = 0; n < count_; n += Lanes::count()) {
-    const auto i = hn::ShiftLeft<2>(load_indices(i_ + n));
-    const auto j = hn::ShiftLeft<2>(load_indices(j_ + n));
-    const auto along_e = [&](Index index) {
-      const auto before = velocity(particles.motion, index);
-      const auto after = velocity(particles.trial, index);
+    const auto change_along_e = [&](const FourLanes& before, const FourLanes& after) {
       return (after.x - before.x) * Lanes::load(arrays_.e_x + n) +
              (after.y - before.y) * Lanes::load(arrays_.e_y + n) +
              (after.z - before.z) * Lanes::load(arrays_.e_z + n);
     };
-    const Lanes dv_i = along_e(i), dv_j = along_e(j);
+    const auto i = fetch(particles.trial, i_ + n), j = fetch(particles.trial, j_ + n);
+    const Lanes dv_i = change_along_e(fetch(particles.motion, i_ + n), i);
+    const Lanes dv_j = change_along_e(fetch(particles.motion, j_ + n), j);
     dv_i.store(arrays_.trial_dv_i + n);
     dv_j.store(arrays_.trial_dv_j + n);
     (Lanes::load(arrays_.v + n) + (dv_i - dv_j)).store(arrays_.trial_v + n);
-    gather(component(particles.trial, 3), i).store(arrays_.trial_u_i + n);
-    gather(component(particles.trial, 3), j).store(arrays_.trial_u_j + n);
+    i.energy.store(arrays_.trial_u_i + n);
+    j.energy.store(arrays_.trial_u_j + n);
   }
 }
 
 void PairPass::add(Quadruple* sums) {
+  const PassClock clock(part(&PassSeconds::scatter));
   for (std::size_t n = 0; n < count_; n += Lanes::count()) {
     const Lanes momentum = Lanes::load(arrays_.momentum + n);
     const Lanes x = momentum * Lanes::load(arrays_.e_x + n),
                 y = momentum * Lanes::load(arrays_.e_y + n),
                 z = momentum * Lanes::load(arrays_.e_z + n);
-    hn::StoreInterleaved4(x.raw(), y.raw(), z.raw(), Lanes::load(arrays_.energy_i + n).raw(),
-                          Doubles(), &to_i_[n].x);
-    hn::StoreInterleaved4((-x).raw(), (-y).raw(), (-z).raw(),
-                          Lanes::load(arrays_.energy_j + n).raw(), Doubles(), &to_j_[n].x);
+    turn({x, y, z, Lanes::load(arrays_.energy_i + n)}, &to_i_[n]);
+    turn({-x, -y, -z, Lanes::load(arrays_.energy_j + n)}, &to_j_[n]);
   }
   for (std::size_t n = 0; n < count_; ++n) {
     sums[i_[n]] += to_i_[n];
@@ -198,30 +231,28 @@ void PairPass::add(Quadruple* sums) {
 }
 
 bool PairPass::apply(const PassParticles& particles, std::size_t from, std::size_t to) {
-  const Lanes inverse_mass = 1 / fluid_->mass();
-  // Lanes beyond the last pair go to a place that is nobody's.
-  const auto nobody = hn::Set(Signed(), static_cast<std::int64_t>(cells_->particles()));
-  double* const base = &particles.result->x;
+  const PassClock clock(part(&PassSeconds::scatter));
+  const double inverse_mass = 1 / fluid_->mass();
+  Quadruple* const result = particles.result;
   bool positive = true;
   for (std::size_t n = from; n < to; n += Lanes::count()) {
-    const auto within = hn::FirstN(Signed(), to - n);
-    const auto place = [&](const std::uint32_t* index) {
-      return hn::ShiftLeft<2>(hn::IfThenElse(within, load_indices(index), nobody));
-    };
-    const auto i = place(i_ + n), j = place(j_ + n);
     const Lanes change = Lanes::load(arrays_.momentum + n) * inverse_mass;
-    double* const e[3] = {arrays_.e_x, arrays_.e_y, arrays_.e_z};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Lanes along = change * Lanes::load(e[axis] + n);
-      hn::ScatterIndex((gather(base + axis, i) + along).raw(), Doubles(), base + axis, i);
-      hn::ScatterIndex((gather(base + axis, j) - along).raw(), Doubles(), base + axis, j);
+    const Lanes x = change * Lanes::load(arrays_.e_x + n),
+                y = change * Lanes::load(arrays_.e_y + n),
+                z = change * Lanes::load(arrays_.e_z + n);
+    const auto i = fetch(result, i_ + n), j = fetch(result, j_ + n);
+    const Lanes u_i = i.energy + Lanes::load(arrays_.energy_i + n);
+    const Lanes u_j = j.energy + Lanes::load(arrays_.energy_j + n);
+    turn({i.x + x, i.y + y, i.z + z, u_i}, &to_i_[0]);
+    turn({j.x - x, j.y - y, j.z - z, u_j}, &to_j_[0]);
+    const std::size_t count = std::min(Lanes::count(), to - n);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      result[i_[n + lane]] = to_i_[lane];
+      result[j_[n + lane]] = to_j_[lane];
     }
-    const Lanes u_i = gather(base + 3, i) + Lanes::load(arrays_.energy_i + n);
-    const Lanes u_j = gather(base + 3, j) + Lanes::load(arrays_.energy_j + n);
-    hn::ScatterIndex(u_i.raw(), Doubles(), base + 3, i);
-    hn::ScatterIndex(u_j.raw(), Doubles(), base + 3, j);
-    const auto counted = hn::FirstN(Doubles(), to - n);
-    positive = positive && hn::AllFalse(Doubles(), hn::And(counted, (u_i <= 0 || u_j <= 0).raw()));
+    const auto counted = hn::FirstN(Doubles(), count);
+    const auto spent = (u_i <= 0.0 || u_j <= 0.0).raw();
+    positive = positive && hn::AllFalse(Doubles(), hn::And(counted, spent));
   }
   return positive;
 }

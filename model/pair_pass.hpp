@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <vector>
 
@@ -15,8 +16,36 @@ namespace driftless {
 struct PassParticles {
   const Quadruple* motion = nullptr;  ///< velocities and energies that the pairs see
   const Quadruple* trial = nullptr;   ///< at the trial end of the step
-  const double* energy = nullptr;     ///< energies that the pairs see, every fourth of these
+  const Quadruple* energy = nullptr;  ///< whose energies the pairs see, if others than those
   Quadruple* result = nullptr;        ///< sums of what is exchanged, or the motion itself
+};
+
+/// Seconds that went into each part of the passes over pairs, where they are measured.
+struct PassSeconds {
+  double search = 0;      ///< sorting particles into cells, finding pairs and putting them in order
+  double noise = 0;       ///< random numbers
+  double arithmetic = 0;  ///< geometry, weights, what kernels see and what they answer
+  double scatter = 0;     ///< from pairs to particles
+
+  PassSeconds& operator+=(const PassSeconds& other);
+};
+
+/// Adds the time until its end to a part; does nothing without one.
+class PassClock {
+ public:
+  explicit PassClock(double* part) : part_(part) {
+    if (part_) start_ = std::chrono::steady_clock::now();
+  }
+  ~PassClock() {
+    if (!part_) return;
+    *part_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  PassClock(const PassClock&) = delete;
+  PassClock& operator=(const PassClock&) = delete;
+
+ private:
+  double* part_;
+  std::chrono::steady_clock::time_point start_;
 };
 
 /// One thread's way over pairs, a short pass for each thing to be done: geometry and weights from
@@ -37,6 +66,7 @@ class PairPass {
   void motion(const PassParticles& particles, std::size_t from, std::size_t to);
   void trial(const PassParticles& particles);
   void run(const PairKernel& kernel, std::size_t from, std::size_t to) {
+    const PassClock clock(part(&PassSeconds::arithmetic));
     kernel.run(arrays_, from, to);
   }
   /// Adds what the pairs exchange to the particles' sums, one pair after the other.
@@ -46,6 +76,11 @@ class PairPass {
   bool apply(const PassParticles& particles, std::size_t from, std::size_t to);
 
   const PairArrays& arrays() const { return arrays_; }
+
+  void measure(bool on) { measured_ = on; }
+  const PassSeconds& seconds() const { return seconds_; }
+  /// Where the time of a part is kept; null if it is not measured.
+  double* part(double PassSeconds::*which) { return measured_ ? &(seconds_.*which) : nullptr; }
 
  private:
   void reserve(std::size_t pairs);
@@ -57,6 +92,8 @@ class PairPass {
   std::size_t count_ = 0;
   std::size_t capacity_ = 0;
   bool has_uniforms_ = false;
+  bool measured_ = false;
+  PassSeconds seconds_;
   std::vector<double> memory_;
   PairArrays arrays_{};
   std::vector<std::uint32_t> id_i_, id_j_;

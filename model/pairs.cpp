@@ -66,6 +66,13 @@ class Neighbours {
   std::size_t count_ = 0;
 };
 
+/// 0, 1, 2, ...: loaded, as Highway's Iota is put together number by number at every use.
+constexpr auto counting = [] {
+  std::array<std::uint32_t, hn::MaxLanes(Indices())> numbers{};
+  for (std::uint32_t n = 0; n < numbers.size(); ++n) numbers[n] = n;
+  return numbers;
+}();
+
 /// As many particles side by side as there are lanes of single precision.
 struct Candidates {
   std::array<hn::Vec<Floats>, 3> position;
@@ -73,18 +80,29 @@ struct Candidates {
   hn::Mask<Floats> counted;
 
   Candidates(const CellGrid& cells, std::uint32_t first, std::uint32_t end)
-      : number(hn::Iota(Indices(), first)), counted(hn::FirstN(Floats(), end - first)) {
+
+      : number(hn::Add(hn::LoadU(Indices(), counting.data()), hn::Set(Indices(), first))),
+        counted(hn::FirstN(Floats(), end - first)) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       position[axis] = hn::LoadU(Floats(), cells.rough_position()[axis].data() + first);
     }
   }
 };
 
+/// Where found pairs are written; its own copy of what PairIndices knows, which a compiler may keep
+/// in registers.
+struct Writer {
+  std::uint32_t *i, *j;
+  std::size_t size;
+
+  explicit Writer(PairIndices& found) : i(found.i.data()), j(found.j.data()), size(found.size) {}
+};
+
 /// Writes the pairs of particle i with those candidates that are nearer than the root of `limit` to
 /// a point, its image. There is room for a whole vector of them. `wrap` finds the nearest image of
 /// any distance.
 template <bool wrap>
-HWY_INLINE void add_near(PairIndices& found, const CellGrid& cells, std::uint32_t i,
+HWY_INLINE void add_near(Writer& found, const CellGrid& cells, std::uint32_t i,
                          const Candidates& candidates, const std::array<float, 3>& point,
                          hn::Mask<Floats> counted, float limit) {
   const Floats floats;
@@ -102,19 +120,22 @@ HWY_INLINE void add_near(PairIndices& found, const CellGrid& cells, std::uint32_
   const auto near =
       hn::RebindMask(indices, hn::And(hn::Lt(squared, hn::Set(floats, limit)), counted));
   // Compressed in the register: storing a part of a vector takes longer than all of it.
-  hn::StoreU(hn::Compress(candidates.number, near), indices, found.j.data() + found.size);
-  hn::StoreU(hn::Set(indices, i), indices, found.i.data() + found.size);
+  hn::StoreU(hn::Compress(candidates.number, near), indices, found.j + found.size);
+  hn::StoreU(hn::Set(indices, i), indices, found.i + found.size);
   found.size += hn::CountTrue(indices, near);
 }
 
-void search_cell(PairIndices& found, const CellGrid& cells, int x, int y, int z, float limit) {
+void search_cell(PairIndices& all, const CellGrid& cells, int x, int y, int z, float limit) {
   const auto cell = cells.index(x, y, z);
   const auto begin = cells.begin(cell), end = cells.begin(cell + 1);
   if (begin == end) return;
-  const auto& position = cells.rough_position();
+  const float* const position[3] = {cells.rough_position()[0].data(),
+                                    cells.rough_position()[1].data(),
+                                    cells.rough_position()[2].data()};
   Neighbours neighbours(cells, x, y, z);
   const auto segments = neighbours.segments();
-  found.reserve((end - begin) * neighbours.particles());
+  all.reserve((end - begin) * neighbours.particles());
+  Writer found(all);
   for (const auto& segment : segments) {
     const bool own = &segment == &segments[0];
     for (auto first = segment.begin; first < segment.end; first += hn::Lanes(Floats())) {
@@ -132,18 +153,21 @@ void search_cell(PairIndices& found, const CellGrid& cells, int x, int y, int z,
       }
     }
   }
+  all.size = found.size;
 }
 
-void search_all(PairIndices& found, const CellGrid& cells, float limit) {
+void search_all(PairIndices& all, const CellGrid& cells, float limit) {
   const auto particles = static_cast<std::uint32_t>(cells.particles());
   const auto& position = cells.rough_position();
   for (std::uint32_t i = 0; i < particles; ++i) {
-    found.reserve(particles);
+    all.reserve(particles);
+    Writer found(all);
     for (auto first = i + 1; first < particles; first += hn::Lanes(Floats())) {
       const Candidates candidates(cells, first, particles);
       add_near<true>(found, cells, i, candidates, {position[0][i], position[1][i], position[2][i]},
                      candidates.counted, limit);
     }
+    all.size = found.size;
   }
 }
 

@@ -47,18 +47,31 @@ void System::set_threads(unsigned count) {
   cells_ = CellGrid(box_, fluid_.range(), size());
   pairs_ = PairBlocks(cells_, fluid_.range(), threads_.count());
   passes_.resize(threads_.count());
+  if (measured_) measure_passes();
   pairs_version_ = 0;
+}
+
+void System::measure_passes() {
+  measured_ = true;
+  for (auto& pass : passes_) pass.measure(true);
+}
+
+PassSeconds System::pass_seconds() const {
+  PassSeconds sum;
+  for (const auto& pass : passes_) sum += pass.seconds();
+  return sum;
 }
 
 void System::find_pairs() {
   if (pairs_version_ == positions_version_) return;
+  const PassClock clock(passes_[0].part(&PassSeconds::search));
   pairs_version_ = positions_version_;
   cells_.sort(state_, threads_);
   pairs_.find(cells_, threads_);
 }
 
 void System::gather_motion(const Motion& motion, std::vector<Quadruple>& gathered) const {
-  gathered.resize(size() + 1);  // one more, which is nobody's
+  gathered.resize(size());
   const auto& place = cells_.place();
   for_each_particle([&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
@@ -87,7 +100,7 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
   find_pairs();
   gather_motion(state_, motion_);
   if (trial) gather_motion(*trial, trial_);
-  const PassParticles particles{motion_.data(), trial_.data(), &motion_.data()->energy, nullptr};
+  const PassParticles particles{motion_.data(), trial_.data(), nullptr, nullptr};
   const bool kept =
       trial && std::all_of(pairs_.all().begin(), pairs_.all().end(), [&](auto& block) {
         return block.found.size == 0 || has_kept_normals(block, stage);
@@ -170,10 +183,10 @@ void System::sweep_groups(PairPass& pass, const PairGroups& groups, const PassPa
 void System::sweep(const PairKernel& kernel, const Sweep& how) {
   find_pairs();
   gather_motion(state_, motion_);
-  PassParticles particles{motion_.data(), nullptr, &motion_.data()->energy, motion_.data()};
+  PassParticles particles{motion_.data(), nullptr, nullptr, motion_.data()};
   if (how.energies == SweepEnergies::frozen) {
     frozen_motion_ = motion_;
-    particles.energy = &frozen_motion_.data()->energy;
+    particles.energy = frozen_motion_.data();
   }
   std::vector<std::vector<std::uint32_t>> failed(threads_.count());
   if (how.sequence == SweepSequence::by_ids) {
@@ -185,7 +198,10 @@ void System::sweep(const PairKernel& kernel, const Sweep& how) {
     if (reverse) std::reverse(tasks.begin(), tasks.end());
     threads_.phases(tasks, [&](unsigned thread, std::size_t phase, std::size_t task) {
       PairBlock& block = pairs_.block(reverse ? tasks.size() - 1 - phase : phase, task);
-      pairs_.group(block);
+      {
+        const PassClock clock(passes_[thread].part(&PassSeconds::search));
+        pairs_.group(block);
+      }
       sweep_groups(passes_[thread], block.groups, particles, kernel, how, failed[thread]);
     });
   }

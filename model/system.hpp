@@ -45,6 +45,11 @@ class System {
   /// How many threads work on this system; results are the same bits for any number.
   void set_threads(unsigned count);
 
+  /// Has the passes over pairs measured from now on, at the price of looking at the clock.
+  void measure_passes();
+  /// What they took so far, summed over threads.
+  PassSeconds pass_seconds() const;
+
   /// All pairs from the state as it stands: kernel(const Pair<V>&) -> Transfer<V>, summed per
   /// particle into `total`. `stage` (0 to 255) chooses one of a step's independent noises. Kernels
   /// are pure and called for lanes of pairs, on any thread; one that takes Pair<double> alone is
@@ -134,6 +139,7 @@ class System {
   PairBlocks pairs_;
   std::vector<PairPass> passes_;  ///< one for each thread
   Counters counters_;
+  bool measured_ = false;
   std::uint64_t positions_version_ = 1;
   std::uint64_t pairs_version_ = 0;
   std::uint64_t conservative_version_ = 0;
