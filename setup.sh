@@ -65,7 +65,7 @@ need() {
 need_to_run() {
   if [[ $compiler == *clang* ]]; then
     need clang has_command "$compiler"
-    # The CMake file of SUNDIALS asks for OpenMP, which g++ brings along and clang does not.
+    # g++ brings OpenMP along, clang does not.
     need libomp-dev has_openmp
   else
     need g++ has_command "$compiler"
@@ -217,11 +217,12 @@ configure() {
   echo "$wanted" >"$stamp"
 }
 
-# Says once that there is something to build, and where its log is; passes the log through.
+# Says once that something is compiled or linked, and where its log is; passes the log through. What
+# ninja looks at in every build (new files, the commit) is not worth a word.
 announce() {
   local line announced=''
   while IFS= read -r line; do
-    if [[ -z $announced && $line =~ ^\[[0-9]+/[0-9]+\] ]]; then
+    if [[ -z $announced && $line =~ ^\[[0-9]+/[0-9]+\]\ (Building|Linking)\  ]]; then
       say "building (log: $build/build.log)"
       announced=yes
     fi

@@ -4,159 +4,142 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <set>
-#include <vector>
 
+#include "experiments/answer_words.hpp"
+#include "experiments/deviations.hpp"
 #include "experiments/observables.hpp"
 #include "experiments/order_fit.hpp"
+#include "experiments/statistics.hpp"
 
 namespace driftless {
 namespace {
 
 using nlohmann::json;
 
-constexpr double tolerances[] = {0.01, 0.02, 0.05};
 constexpr double rounding = 1e-12;  // a deviation below it has no order
 const std::vector<std::string> equilibrium_parts = {"kinetic_temperature", "internal_temperature",
                                                     "internal_energy_variance"};
 
-struct Candidate {
-  std::string method;
-  double time_step, cost, upper;
-  bool consistent;
-  json to_json() const {
-    return {{"method", method}, {"time_step", time_step}, {"cost", cost}, {"upper", upper}};
+std::vector<std::string> parts_of(const std::string& observable) {
+  return observable == equilibrium_observable ? equilibrium_parts : std::vector{observable};
+}
+
+/// The largest `key` of a cell's deviations in an observable's parts, if it has all of them.
+std::optional<double> largest(const json& cell, const std::string& observable, const char* key) {
+  double result = 0;
+  for (const auto& part : parts_of(observable)) {
+    const auto entry = cell["observables"].find(part);
+    if (entry == cell["observables"].end() || !entry->contains("deviation")) return std::nullopt;
+    const auto number = (*entry)["deviation"].find(key);
+    if (number == (*entry)["deviation"].end()) return std::nullopt;
+    result = std::max(result, number->get<double>());
   }
+  return result;
+}
+
+using SceneCells = std::vector<const json*>;
+
+SceneCells cells_of(const json& result, const std::string& scene) {
+  SceneCells cells;
+  for (const auto& cell : result["cells"]) {
+    if (cell["scene"] == scene) cells.push_back(&cell);
+  }
+  return cells;
+}
+
+/// What there is to choose from, and the choice while nothing is chosen yet.
+struct Field {
+  Choice empty;
+  std::vector<Candidate> candidates;  ///< compared, with a known cost
 };
 
-/// Each method's cheapest passing cell, cheapest first.
-std::vector<Candidate> passing(const json& cells, const std::string& scene,
-                               const std::string& observable, double tolerance) {
-  std::map<std::string, Candidate> cheapest;
-  for (const auto& cell : cells) {
-    if (cell["scene"] != scene || !cell["cost"]["core_seconds_per_time"].is_number()) continue;
-    const json upper = passing_bound(cell, observable);
-    if (!upper.is_number() || upper.get<double>() > tolerance) continue;
-    const Candidate candidate{method_label(cell), cell["time_step"],
-                              cell["cost"]["core_seconds_per_time"], upper, cell["consistent"]};
-    const auto [known, added] = cheapest.emplace(candidate.method, candidate);
-    if (!added && candidate.cost < known->second.cost) known->second = candidate;
+Field field_of(const SceneCells& cells, const std::string& scene, const std::string& observable) {
+  Field field{{scene, observable, {}, std::nullopt, 0, std::nullopt, false}, {}};
+  auto& [choice, candidates] = field;
+  bool any_ran = false, any_exact = false;
+  for (const json* cell : cells) {
+    any_ran = any_ran || (*cell)["status"] == "ok";
+    any_exact = any_exact || largest(*cell, observable, "value");
+    const auto bound = largest(*cell, observable, "bound");
+    const auto least = largest(*cell, observable, "resolution");
+    if (!bound || !least) continue;
+    ++choice.cells_compared;
+    choice.resolution = std::min(choice.resolution.value_or(*least), *least);
+    const auto cost = cell->value("cost", json::object()).value("core_seconds_per_time", json());
+    if (!cost.is_number()) continue;
+    candidates.push_back(
+        {method_label(*cell), (*cell)["time_step"], cost, *bound, (*cell)["consistent"]});
+  }
+  choice.lacks_exact_value = any_ran && !any_exact;
+  return field;
+}
+
+/// The best cell of every method that `allows` one.
+template <class Allows, class Better>
+Choice choose(const Field& field, Allows&& allows, Better&& better) {
+  std::map<std::string, Candidate> best;
+  for (const auto& candidate : field.candidates) {
+    if (!allows(candidate)) continue;
+    const auto [known, added] = best.emplace(candidate.method, candidate);
+    if (!added && better(candidate, known->second)) known->second = candidate;
   }
   std::vector<Candidate> sorted;
-  for (const auto& [method, candidate] : cheapest) sorted.push_back(candidate);
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const auto& a, const auto& b) { return a.cost < b.cost; });
-  return sorted;
-}
-
-std::string subject(const std::string& observable) {
-  if (observable == equilibrium_observable) {
-    return "temperatures and the variance of the internal energy";
-  }
-  std::string words = observable;
-  std::replace(words.begin(), words.end(), '_', ' ');
-  return "the " + words;
-}
-
-/// What an answer rests on: the cheapest methods whose limit is the model, and the cheapest method
-/// of another limit if that is cheaper still. Right in this study's equilibrium, it need not be
-/// elsewhere.
-struct Ranking {
-  std::vector<Candidate> consistent;
-  std::optional<Candidate> cheaper_inconsistent;
-
-  explicit Ranking(const std::vector<Candidate>& passed) {
-    for (const auto& candidate : passed) {
-      if (candidate.consistent) {
-        consistent.push_back(candidate);
-      } else if (consistent.empty() && !cheaper_inconsistent) {
-        cheaper_inconsistent = candidate;
-      }
+  for (const auto& [method, candidate] : best) sorted.push_back(candidate);
+  std::stable_sort(sorted.begin(), sorted.end(), better);
+  Choice choice = field.empty;
+  for (auto& candidate : sorted) {
+    if (candidate.consistent) {
+      choice.ranked.push_back(std::move(candidate));
+    } else if (choice.ranked.empty() && !choice.better_inconsistent) {
+      choice.better_inconsistent = std::move(candidate);
     }
   }
-};
-
-std::string sentence(const std::string& scene, const std::string& observable, double tolerance,
-                     const Ranking& ranking) {
-  std::string text = fmt::format("For {}, to have {} within {:g} %: ", scene, subject(observable),
-                                 100 * tolerance);
-  if (ranking.consistent.empty()) {
-    text += "no method and step of this study is shown to be";
-  } else {
-    const auto& best = ranking.consistent.front();
-    text +=
-        fmt::format("{} at step {:g}, {:.3g} core-seconds per unit time, wrong by at most {:.2g} %",
-                    best.method, best.time_step, best.cost, 100 * best.upper);
-  }
-  if (ranking.consistent.size() > 1) {
-    const auto& next = ranking.consistent[1];
-    text += fmt::format("; next {} at step {:g}, {:.2g} times the cost", next.method,
-                        next.time_step, next.cost / ranking.consistent.front().cost);
-  }
-  if (const auto& other = ranking.cheaper_inconsistent) {
-    text += fmt::format("; {} at step {:g} passes for {:.3g}, but its limit is not the model",
-                        other->method, other->time_step, other->cost);
-  }
-  return text + ".";
+  return choice;
 }
 
-json answer(const json& cells, const std::string& scene, const std::string& observable,
-            double tolerance) {
-  const Ranking ranking(passing(cells, scene, observable, tolerance));
-  json entry = {{"scene", scene},
-                {"observable", observable},
+Choice cheapest_of(const Field& field, double tolerance) {
+  return choose(
+      field, [&](const Candidate& candidate) { return candidate.bound <= tolerance; },
+      [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+}
+
+json to_json(const Candidate& candidate) {
+  return {{"method", candidate.method},
+          {"time_step", candidate.time_step},
+          {"cost", candidate.cost},
+          {"upper", candidate.bound}};
+}
+
+json answer(const Field& field, double tolerance) {
+  const Choice choice = cheapest_of(field, tolerance);
+  json entry = {{"scene", choice.scene},
+                {"observable", choice.observable},
                 {"tolerance", tolerance},
+                {"level", bounds_level},
+                {"cells_compared", choice.cells_compared},
+                {"resolution", nullptr},
                 {"method", nullptr},
                 {"time_step", nullptr},
                 {"cost", nullptr},
                 {"upper", nullptr},
                 {"runner_up", nullptr},
                 {"cheaper_inconsistent", nullptr},
-                {"sentence", sentence(scene, observable, tolerance, ranking)}};
-  if (!ranking.consistent.empty()) entry.update(ranking.consistent.front().to_json());
-  if (ranking.consistent.size() > 1) entry["runner_up"] = ranking.consistent[1].to_json();
-  if (const auto& other = ranking.cheaper_inconsistent) {
-    entry["cheaper_inconsistent"] = other->to_json();
+                {"sentence", tolerance_sentence(choice, tolerance)}};
+  if (choice.resolution) entry["resolution"] = *choice.resolution;
+  if (!choice.ranked.empty()) entry.update(to_json(choice.ranked.front()));
+  if (choice.ranked.size() > 1) entry["runner_up"] = to_json(choice.ranked[1]);
+  if (const auto& other = choice.better_inconsistent) {
+    entry["cheaper_inconsistent"] = to_json(*other);
   }
   return entry;
 }
 
-std::vector<std::string> names_of(const json& records) {
-  std::vector<std::string> names;
-  for (const auto& record : records) names.push_back(record["name"]);
-  return names;
-}
-
-/// A tolerance in percent means little for a drift or the distance of two distributions.
-bool is_relative(std::string_view name) {
-  return name != "energy_drift" && !name.ends_with("_distance");
-}
-
-/// The observables that some cell of a scene has a deviation for, in the order of their list.
-std::vector<std::string> judged_observables(const json& cells, const std::string& scene) {
-  std::set<std::string> known;
-  for (const auto& cell : cells) {
-    if (cell["scene"] != scene) continue;
-    for (const auto& [name, entry] : cell["observables"].items()) {
-      if (entry.contains("deviation")) known.insert(name);
-    }
-  }
-  std::vector<std::string> names;
-  const auto has = [&](const std::string& name) { return known.contains(name); };
-  if (std::all_of(equilibrium_parts.begin(), equilibrium_parts.end(), has)) {
-    names.emplace_back(equilibrium_observable);
-  }
-  for (const auto& spec : observable_specs()) {
-    if (has(std::string(spec.name))) names.emplace_back(spec.name);
-  }
-  return names;
-}
-
-json orders_of(const json& cells, const std::string& scene, const std::string& observable) {
+json orders_of(const SceneCells& cells, const std::string& scene, const std::string& observable) {
   std::map<std::string, std::vector<Deviation>> deviations;
-  for (const auto& cell : cells) {
-    if (cell["scene"] != scene || cell["status"] != "ok") continue;
+  for (const json* record : cells) {
+    const json& cell = *record;
+    if (cell["status"] != "ok") continue;
     const auto& observables = cell["observables"];
     if (!observables.contains(observable)) continue;
     const auto& entry = observables[observable];
@@ -165,7 +148,7 @@ json orders_of(const json& cells, const std::string& scene, const std::string& o
     const double value = deviation["value"], lower = deviation["lower"], upper = deviation["upper"];
     if (deviation["below_noise"] || value < rounding) continue;
     deviations[method_label(cell)].push_back(
-        {cell["time_step"], value, (upper - lower) / (2 * 1.96)});
+        {cell["time_step"], value, (upper - lower) / (2 * interval_quantile)});
   }
   json orders = json::array();
   for (const auto& [method, points] : deviations) {
@@ -183,6 +166,38 @@ json orders_of(const json& cells, const std::string& scene, const std::string& o
 
 }  // namespace
 
+const std::vector<double>& answer_tolerances() {
+  static const std::vector<double> all = {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
+  return all;
+}
+
+Choice cheapest_within(const json& result, const std::string& scene, const std::string& observable,
+                       double tolerance) {
+  return cheapest_of(field_of(cells_of(result, scene), scene, observable), tolerance);
+}
+
+Choice most_accurate_within(const json& result, const std::string& scene,
+                            const std::string& observable, double budget) {
+  return choose(
+      field_of(cells_of(result, scene), scene, observable),
+      [&](const Candidate& candidate) { return candidate.cost <= budget; },
+      [](const Candidate& a, const Candidate& b) { return a.bound < b.bound; });
+}
+
+std::vector<std::string> judged_observables(const json& result) {
+  std::set<std::string> known;
+  for (const auto& cell : result["cells"]) {
+    for (const auto& [name, entry] : cell["observables"].items()) {
+      if (entry.contains("deviation")) known.insert(name);
+    }
+  }
+  std::vector<std::string> names = {equilibrium_observable};
+  for (const auto& spec : observable_specs()) {
+    if (known.contains(std::string(spec.name))) names.emplace_back(spec.name);
+  }
+  return names;
+}
+
 std::string method_label(const json& cell) {
   std::string text = cell["method"];
   for (const auto& [name, value] : cell["options"].items()) {
@@ -192,36 +207,27 @@ std::string method_label(const json& cell) {
   return text;
 }
 
-json passing_bound(const json& cell, const std::string& observable) {
-  if (cell["status"] != "ok") return nullptr;
-  const auto bound = [&](const std::string& name) -> json {
-    const auto& observables = cell["observables"];
-    if (!observables.contains(name)) return nullptr;
-    const auto& entry = observables[name];
-    if (entry["status"] != "ok" || !entry.contains("deviation")) return nullptr;
-    return entry["deviation"]["upper"];
-  };
-  if (observable != equilibrium_observable) return bound(observable);
-  double worst = 0;
-  for (const auto& part : equilibrium_parts) {
-    const json upper = bound(part);
-    if (!upper.is_number()) return nullptr;
-    worst = std::max(worst, upper.get<double>());
-  }
-  return worst;
+std::optional<WorstDeviation> worst_deviation(const json& cell, const std::string& observable) {
+  const auto value = largest(cell, observable, "value"), bound = largest(cell, observable, "bound");
+  if (!value || !bound) return std::nullopt;
+  return WorstDeviation{*value, *bound};
 }
 
 void add_answers(json& result) {
+  add_deviations(result);
   result["orders"] = json::array();
   result["answers"] = json::array();
-  for (const auto& scene : names_of(result["scenes"])) {
-    for (const auto& observable : judged_observables(result["cells"], scene)) {
-      for (auto& order : orders_of(result["cells"], scene, observable)) {
+  const auto observables = judged_observables(result);
+  for (const auto& record : result["scenes"]) {
+    const std::string scene = record["name"];
+    const SceneCells cells = cells_of(result, scene);
+    for (const auto& observable : observables) {
+      for (auto& order : orders_of(cells, scene, observable)) {
         result["orders"].push_back(std::move(order));
       }
-      if (!is_relative(observable)) continue;
-      for (const double tolerance : tolerances) {
-        result["answers"].push_back(answer(result["cells"], scene, observable, tolerance));
+      const Field field = field_of(cells, scene, observable);
+      for (const double tolerance : answer_tolerances()) {
+        result["answers"].push_back(answer(field, tolerance));
       }
     }
   }

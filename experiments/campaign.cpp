@@ -13,8 +13,11 @@
 #include "experiments/answers.hpp"
 #include "experiments/cell.hpp"
 #include "experiments/files.hpp"
+#include "experiments/interrupt.hpp"
+#include "experiments/processors.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/result_file.hpp"
 #include "experiments/scene_keys.hpp"
 #include "experiments/text_file.hpp"
 #include "experiments/timing.hpp"
@@ -60,6 +63,7 @@ struct Cell {
   std::vector<ReplicaResult> replicas;
   std::atomic<unsigned> remaining = 0;
 
+  bool is_refused() const { return !record.is_null() && record["status"] == "not_applicable"; }
   std::string name() const {
     return fmt::format("{}, {}, step {}", prepared->scene().name, choice->name, time_step);
   }
@@ -70,8 +74,7 @@ class Campaign {
   Campaign(const Study& study, const CampaignOptions& options)
       : study_(study),
         options_(options),
-        threads_(options.threads > 0 ? options.threads
-                                     : std::max(1U, std::thread::hardware_concurrency())) {}
+        threads_(options.threads > 0 ? options.threads : usable_processors()) {}
 
   json run();
 
@@ -79,6 +82,9 @@ class Campaign {
   void prepare_directory() const;
   void prepare_scenes();
   void list_cells();
+  Plan plan() const;
+  void tell_of_discarded(const Plan& now) const;
+  std::string interrupted() const;
   std::string cell_key(const Scene& scene, const MethodChoice& choice, double time_step) const;
   double predicted_cost(const Cell& cell) const;
   void run_cells();
@@ -90,8 +96,10 @@ class Campaign {
   const Study& study_;
   const CampaignOptions& options_;
   unsigned threads_;
+  unsigned threads_of_a_run_ = 1;
   std::vector<std::unique_ptr<PreparedScene>> prepared_;
   std::vector<std::unique_ptr<Cell>> cells_;
+  std::atomic<std::size_t> finished_ = 0, planned_ = 0;  ///< cells whose methods apply
 };
 
 void Campaign::prepare_directory() const {
@@ -147,6 +155,41 @@ void Campaign::list_cells() {
   }
 }
 
+Plan Campaign::plan() const {
+  Plan plan{program_fingerprint(), options_.command, {}, false};
+  for (const auto& cell : cells_) {
+    if (!cell->is_refused()) plan.cells.push_back({cell->name(), cell->file.filename().string()});
+  }
+  return plan;
+}
+
+/// Cells that were finished here and that this run cannot take up, because they are another build's
+/// or another study's.
+void Campaign::tell_of_discarded(const Plan& now) const {
+  const auto before = read_plan(options_.directory);
+  if (!before || options_.quiet) return;
+  std::set<std::string> known;
+  for (const auto& cell : now.cells) known.insert(cell.file);
+  const auto discarded =
+      std::count_if(before->cells.begin(), before->cells.end(), [&](const Plan::Cell& cell) {
+        return !known.contains(cell.file) && fs::exists(options_.directory / "cells" / cell.file);
+      });
+  if (discarded == 0) return;
+  fmt::print(stderr, "{} finished {} in {} not used: {} of another {}\n", discarded,
+             discarded == 1 ? "cell" : "cells",
+             options_.directory.string() + (discarded == 1 ? " is" : " are"),
+             discarded == 1 ? "it is" : "they are",
+             before->program == now.program ? "study" : "build of the program");
+}
+
+std::string Campaign::interrupted() const {
+  const std::size_t planned = planned_;
+  const std::string done =
+      planned == 0 ? "no cell is finished yet"
+                   : fmt::format("{} of {} cells are finished and kept", finished_.load(), planned);
+  return fmt::format("interrupted; {}; the same command goes on: {}", done, options_.command);
+}
+
 double Campaign::predicted_cost(const Cell& cell) const {
   return static_cast<double>(StepPlan(study_, cell.time_step).steps()) *
          static_cast<double>(cell.prepared->scene().particles);
@@ -155,12 +198,13 @@ double Campaign::predicted_cost(const Cell& cell) const {
 void Campaign::run_one(Cell& cell, unsigned replica, Progress& progress) {
   progress.replica_started();
   cell.replicas[replica] =
-      run_replica(*cell.prepared, study_, *cell.choice, cell.time_step, replica);
+      run_replica(*cell.prepared, study_, *cell.choice, cell.time_step, replica, threads_of_a_run_);
   progress.replica_finished(predicted_cost(cell));
   if (--cell.remaining > 0) return;
   cell.record = cell_record(*cell.prepared, study_, *cell.choice, cell.time_step, cell.replicas);
   cell.replicas = {};
   write_atomically(cell.file, cell.record.dump());
+  ++finished_;
   progress.cell_finished(cell.name(), cell.record["status"]);
 }
 
@@ -183,12 +227,15 @@ void Campaign::run_cells() {
   const auto count = [&](auto&& which) {
     return static_cast<std::size_t>(std::count_if(cells_.begin(), cells_.end(), which));
   };
-  const auto refused = count([](const auto& cell) {
-    return !cell->record.is_null() && cell->record["status"] == "not_applicable";
-  });
+  const auto refused = count([](const auto& cell) { return cell->is_refused(); });
   const auto finished = count([](const auto& cell) { return !cell->record.is_null(); });
+  finished_ = finished - refused;
+  planned_ = cells_.size() - refused;
   Progress progress(cells_.size() - refused, cost, options_.quiet);
   progress.cells_resumed(finished - refused);
+  // Whole runs side by side come first, as they need not wait for each other.
+  const auto at_once = std::clamp<std::size_t>(runs.size(), 1, threads_);
+  threads_of_a_run_ = threads_ / static_cast<unsigned>(at_once);
   parallel(runs.size(), threads_,
            [&](std::size_t n) { run_one(*runs[n].first, runs[n].second, progress); });
 }
@@ -266,8 +313,12 @@ json Campaign::method_records() const {
 
 json Campaign::run() {
   prepare_directory();
+  const InterruptNotice notice([this] { return interrupted(); });
   prepare_scenes();
   list_cells();
+  const Plan planned = plan();
+  tell_of_discarded(planned);
+  write_plan(planned, options_.directory);
   run_cells();
   time_all();
   json result = {{"format", "driftless-result/1"},

@@ -9,8 +9,8 @@
 namespace driftless {
 
 struct CampaignOptions {
-  std::filesystem::path directory;  ///< gets result.json, index.html, summary.md, finished cells
-  unsigned threads = 0;             ///< 0: all processors
+  std::filesystem::path directory;  ///< gets the result, its reports, plan.json, finished cells
+  unsigned threads = 0;             ///< 0: all processors that it may use
   std::string command;              ///< for the provenance: the command that repeats the run
   bool quiet = false;               ///< no progress on the terminal
 };

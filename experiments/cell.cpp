@@ -13,9 +13,6 @@ using nlohmann::json;
 // Beyond this the replica started off equilibrium disagrees: with five observables compared, a
 // chance of some 1 in 300,000 a cell.
 constexpr double largest_agreeing_z = 5;
-constexpr double interval = 1.96;  // 95 %
-
-bool is_distance(std::string_view name) { return name.ends_with("_distance"); }
 
 json curve_json(const Histogram& histogram) {
   json curve = {{"x", histogram.x}, {"density", histogram.density}, {"error", histogram.error}};
@@ -64,8 +61,11 @@ json observable_json(const Observed& observed, const std::string& unresolved) {
   if (observed.exact) {
     entry["exact"] = observed.exact->value;
     if (observed.exact->error > 0) entry["exact_error"] = observed.exact->error;
-    entry["deviation"] = deviation(observed);
   }
+  if (std::isfinite(observed.value.degrees_of_freedom)) {
+    entry["degrees_of_freedom"] = observed.value.degrees_of_freedom;
+  }
+  if (observed.value.replicas_disagree) entry["replicas_disagree"] = true;
   if (const auto& limits = observed.interval) {
     entry["interval"] = {limits->first, limits->second};
   }
@@ -140,26 +140,6 @@ bool resolves(const Study& study, double relaxation_time) {
          study.measure >= 20 * relaxation_time * rounding;
 }
 
-json deviation(const Observed& observed) {
-  double centre, error = observed.value.error, upper, lower;
-  if (is_distance(observed.name)) {
-    const auto root = [](double square) { return std::sqrt(std::max(0.0, square)); };
-    centre = root(observed.value.mean);
-    lower = root(observed.value.mean - interval * error);
-    // The unbiased square may be negative; what it may hide is counted from zero.
-    upper = root(std::max(0.0, observed.value.mean) + interval * error);
-  } else {
-    // A skewness may well be near zero; it is a number in units of one.
-    const bool absolute = observed.exact->value == 0 || observed.name.ends_with("_skewness");
-    const double scale = absolute ? 1 : std::abs(observed.exact->value);
-    centre = std::abs(observed.value.mean - observed.exact->value) / scale;
-    error = std::hypot(error, observed.exact->error) / scale;
-    lower = std::max(0.0, centre - interval * error);
-    upper = centre + interval * error;
-  }
-  return {{"value", centre}, {"lower", lower}, {"upper", upper}, {"below_noise", lower == 0}};
-}
-
 std::string cell_status(const std::vector<ReplicaResult>& replicas) {
   for (const auto& replica : replicas) {
     if (replica.failure) return status_of(replica.failure->cause);
@@ -194,6 +174,7 @@ json cell_record(const PreparedScene& prepared, const Study& study, const Method
   if (cell.has_off_equilibrium) {
     record["off_equilibrium"] = {{"agrees", cell.largest_z <= largest_agreeing_z},
                                  {"largest_z", cell.largest_z},
+                                 {"threshold", largest_agreeing_z},
                                  {"observable", cell.disagreeing}};
   }
   record["curves"] = json::object();

@@ -11,8 +11,9 @@ namespace driftless {
 /// The status of a cell: "ok", or that of its first failed replica.
 std::string cell_status(const std::vector<ReplicaResult>& replicas);
 
-/// The record of a cell in a result, without its cost: what was measured, with intervals, beside
-/// what is exact; how replicas failed; curves and energy trace. Never holds NaN or infinity.
+/// The record of a cell in a result, without its cost: what was measured, with errors, beside what
+/// is exact (deviations take the other cells: `add_deviations`); how replicas failed; curves and
+/// energy trace. Never holds NaN or infinity.
 nlohmann::json cell_record(const PreparedScene& prepared, const Study& study,
                            const MethodChoice& choice, double time_step,
                            const std::vector<ReplicaResult>& replicas);
@@ -20,10 +21,6 @@ nlohmann::json cell_record(const PreparedScene& prepared, const Study& study,
 /// The record of a cell whose method refuses the scene.
 nlohmann::json refused_cell(const PreparedScene& prepared, const MethodChoice& choice,
                             double time_step, const std::string& reason);
-
-/// How far a measured observable lies from its exact value: {value, lower, upper, below_noise}, the
-/// relative difference with its 95 % interval; for distances their root, for drifts the size.
-nlohmann::json deviation(const Observed& observed);
 
 /// Whether a study is long enough for observables that relax in a predicted time: equilibration of
 /// 5 such times and measurement of 20.

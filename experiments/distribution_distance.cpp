@@ -147,6 +147,8 @@ Estimate distribution_distance(const std::vector<Block>& all_blocks) {
   if (sums.with_neighbours > 0.0) {
     result.effective_samples *= sums.independent / sums.with_neighbours;
   }
+  result.degrees_of_freedom = std::max(1.0, result.effective_samples - 1.0);
+  result.error *= student_factor(result.degrees_of_freedom);
   return result;
 }
 

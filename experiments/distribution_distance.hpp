@@ -34,8 +34,8 @@ struct Block {
 /// where it is positive. Far from the exact law it is right. At the exact law, where the statistic
 /// is degenerate (linear in no block alone), the jackknife's variance is twice the true one: errors
 /// are some 40 % too large there, which about makes up for the long upper tail of the statistic's
-/// law. `effective_samples` is the number of equally large independent blocks; `replicas_disagree`
-/// is never set.
+/// law. `effective_samples` is the number of equally large independent blocks, one more than the
+/// error's degrees of freedom; `replicas_disagree` is never set.
 ///
 /// Blocks without samples are left out. Throws std::invalid_argument if the numbers of bins differ,
 /// two blocks have the same replica and index, or no pair of independent blocks is left. With fewer

@@ -8,7 +8,6 @@ namespace driftless {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double normal_quantile = 1.959963984540054;  // 97.5 %
 /// That of the walk's interval: above the normal one, as a fluctuation can only be fitted with a
 /// positive strength, which is then taken from the walk. Found with pure walks: with the normal one
 /// only 89 to 93 % of the intervals hold the truth.
@@ -117,7 +116,7 @@ WalkStrength walk_interval(const std::vector<Shape>& all, const Shape& best, dou
     while (profile(all, below) > level) below *= 0.5;
     walk.lower = crossing(all, level, std::min(2.0 * below, walk.value), below);
   }
-  walk.error = (walk.upper - walk.lower) / (2.0 * normal_quantile);
+  walk.error = (walk.upper - walk.lower) / (2.0 * interval_quantile);
   return walk;
 }
 
@@ -132,14 +131,14 @@ double effective_increments(const std::vector<DriftModes>& replicas,
   return result;
 }
 
-/// Student's factor for the slope: its error is that of the slowest mode's variance, of which the
+/// Degrees of freedom of the slope's error: it is that of the slowest mode's variance, of which the
 /// walk's share is only known from the modes where the walk dominates (Satterthwaite's rule).
-double slope_factor(const DriftModes& modes, const DriftFit& fit) {
+double slope_degrees(const DriftModes& modes, const DriftFit& fit) {
   const double share = fit.best.walk * modes.walk[0] / total_variance(modes, fit.best)[0];
   const double walk =
       share > 0.0 ? share * share / std::max(1.0, fit.walk.effective_increments) : 0;
   const double rest = (1.0 - share) * (1.0 - share) / fit.degrees_of_freedom;
-  return student_factor(std::min(fit.degrees_of_freedom, 1.0 / (walk + rest)));
+  return std::min(fit.degrees_of_freedom, 1.0 / (walk + rest));
 }
 
 /// Variance of the slope: averaged over the likelihood of the shapes, but not below that of any
@@ -206,8 +205,9 @@ DriftFit fit_drift(const std::vector<DriftModes>& replicas) {
                  best.variance.slowness};
   result.walk = walk_interval(all, best, largest_walk);
   result.walk.effective_increments = effective_increments(replicas, result.best);
+  result.slope_degrees_of_freedom = std::max(1.0, slope_degrees(longest_of(replicas), result));
   result.slope_error =
-      std::sqrt(slope_variance(all, best)) * slope_factor(longest_of(replicas), result);
+      std::sqrt(slope_variance(all, best)) * student_factor(result.slope_degrees_of_freedom);
   return result;
 }
 

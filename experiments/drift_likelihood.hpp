@@ -34,7 +34,8 @@ struct SlopeFit {
 struct DriftFit {
   DriftVariance best;  ///< where the restricted likelihood is largest
   double slope = 0.0;
-  double slope_error = 0.0;
+  double slope_error = 0.0;               ///< widened for its degrees of freedom
+  double slope_degrees_of_freedom = 1.0;  ///< of slope_error's square
   WalkStrength walk;
   double degrees_of_freedom = 0.0;  ///< modes less the slope
   bool deterministic = false;       ///< nothing is left beside the line: all errors are zero

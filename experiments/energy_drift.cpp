@@ -91,9 +91,10 @@ void compare_replicas(const std::vector<DriftModes>& modes, const DriftFit& fit,
   const double others = static_cast<double>(modes.size()) - 1.0;
   const double scatter = chi_squared / others;
   slope.replicas_disagree = exceeds_by_chance(scatter, others, 1.0, fit.degrees_of_freedom) < 0.01;
-  if (slope.replicas_disagree) {
-    slope.error = std::max(slope.error, std::sqrt(scatter / information) * student_factor(others));
-  }
+  const double error = std::sqrt(scatter / information) * student_factor(others);
+  if (!slope.replicas_disagree || error <= slope.error) return;
+  slope.error = error;
+  slope.degrees_of_freedom = others;
 }
 
 }  // namespace
@@ -121,6 +122,7 @@ EnergyDrift energy_drift(const std::vector<EnergyTrace>& replicas) {
   result.slope.mean = fit.slope;
   result.slope.effective_samples = fit.degrees_of_freedom + 1.0;
   result.slope.error = fit.degrees_of_freedom < 1.0 ? infinity : fit.slope_error;
+  result.slope.degrees_of_freedom = fit.slope_degrees_of_freedom;
   result.walk = fit.walk;
   if (!fit.deterministic) compare_replicas(modes, fit, result.slope);
   result.slope.mean += trend;

@@ -4,13 +4,16 @@
 #include <filesystem>
 #include <iostream>
 
+#include "experiments/bench/bench.hpp"
 #include "experiments/campaign.hpp"
-#include "experiments/json_text.hpp"
 #include "experiments/observables.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/recommend.hpp"
 #include "experiments/report.hpp"
+#include "experiments/result_file.hpp"
 #include "experiments/scene_keys.hpp"
-#include "experiments/text_file.hpp"
+#include "experiments/study_warnings.hpp"
+#include "integrators/modules.hpp"
 
 namespace {
 
@@ -20,6 +23,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::string study, result, directory, kind;
   unsigned threads = 0;
+  std::vector<std::string> modules;
   bool json = false, quiet = false;
 };
 
@@ -57,10 +61,15 @@ void print_scenes(bool as_json) {
   for (const auto& preset : presets()) {
     fmt::print("{}\n  {}\n  source: {}\n", preset.name, preset.title, preset.source);
     const auto values = scene_parameters(preset.scene);
+    // A start that is given takes keys that mean nothing to the preset's own.
+    Scene given = preset.scene;
+    given.initial_state = InitialState::given;
+    const auto of_given = scene_parameters(given);
     for (const auto& key : scene_keys()) {
       const std::string name(key.name);
-      if (!values.contains(name)) continue;
-      fmt::print("  {:<24} {:<24} {} ({})\n", name, values[name].dump(), key.meaning,
+      if (!values.contains(name) && !of_given.contains(name)) continue;
+      fmt::print("  {:<24} {:<24} {} ({})\n", name,
+                 values.contains(name) ? values[name].dump() : "-", key.meaning,
                  key.rule.allowed());
     }
   }
@@ -76,38 +85,52 @@ void print_schema(const std::string& kind) {
   fmt::print("{}\n", (kind == "study" ? study_schema() : result_schema()).dump(2));
 }
 
+/// "1 scene", "2 scenes".
+std::string counted(std::size_t count, const std::string& thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
+/// The study, after what there is to say against it.
+Study read_and_warn(const std::string& file) {
+  Study study = read_study(file);
+  for (const auto& warning : study_warnings(study, file)) {
+    fmt::print(stderr, "{}: warning: {}\n", file, warning);
+  }
+  return study;
+}
+
 void check(const Arguments& arguments) {
-  const Study study = read_study(arguments.study);
-  fmt::print("{}: a valid study of {} scenes, {} methods, {} steps and {} replicas\n",
-             arguments.study, study.scenes.size(), study.methods.size(), study.time_steps.size(),
-             study.replicas);
+  const Study study = read_and_warn(arguments.study);
+  fmt::print("{}: a valid study of {}, {}, {} and {}\n", arguments.study,
+             counted(study.scenes.size(), "scene"), counted(study.methods.size(), "method"),
+             counted(study.time_steps.size(), "time step"), counted(study.replicas, "replica"));
+}
+
+void print_report(const nlohmann::json& result, const fs::path& directory) {
+  const auto page = write_report(result, directory);
+  fmt::print("{}\nPage: {}\n", summary(result), fs::absolute(page).lexically_normal().string());
 }
 
 void run(const Arguments& arguments) {
-  const Study study = read_study(arguments.study);
+  const Study study = read_and_warn(arguments.study);
   const fs::path directory = arguments.directory.empty()
                                  ? fs::path("driftless-results") / fs::path(arguments.study).stem()
                                  : fs::path(arguments.directory);
-  const std::string command =
-      fmt::format("driftless run {} -o {}", arguments.study, directory.string());
-  const auto result = run_campaign(study, {directory, arguments.threads, command, arguments.quiet});
-  const auto page = write_report(result, directory);
-  fmt::print("{}\nPage: {}\n", summary(result), fs::absolute(page).lexically_normal().string());
+  std::string command = "driftless";
+  for (const auto& module : loaded_modules()) command += " --methods " + module.string();
+  command += fmt::format(" run {} -o {}", arguments.study, directory.string());
+  print_report(run_campaign(study, {directory, arguments.threads, command, arguments.quiet}),
+               directory);
 }
 
 void report(const Arguments& arguments) {
-  fs::path file = arguments.result;
-  if (fs::is_directory(file)) file /= "result.json";
-  const auto result = parse_json_text(read_text_file(file.string()), file.string());
-  if (!result.is_object() || result.value("format", "") != "driftless-result/1") {
-    throw InputError(file.string() + ": is not a result of format driftless-result/1");
-  }
-  const fs::path directory =
-      arguments.directory.empty() ? file.parent_path() : fs::path(arguments.directory);
+  const fs::path given = arguments.result;
+  const auto result = read_result(given);
+  fs::path directory = fs::is_directory(given) ? given : given.parent_path();
+  if (!arguments.directory.empty()) directory = arguments.directory;
   std::error_code error;
   if (!directory.empty()) fs::create_directories(directory, error);
-  const auto page = write_report(result, directory);
-  fmt::print("{}\nPage: {}\n", summary(result), fs::absolute(page).lexically_normal().string());
+  print_report(result, directory);
 }
 
 }  // namespace
@@ -118,13 +141,24 @@ int main(int argc, char** argv) {
       "conservation (DPDE)"};
   app.set_version_flag("--version", "driftless " + version());
   app.require_subcommand(1);
+  app.fallthrough();  // --methods may stand behind the command too
   Arguments arguments;
+  app.add_option("--methods", arguments.modules,
+                 "shared objects with methods of your own, besides those of DRIFTLESS_METHODS")
+      ->option_text("FILE...");
+  app.parse_complete_callback([&] {
+    for (const auto& module : arguments.modules) load_methods(module);
+  });
 
   auto* run_command = app.add_subcommand("run", "run a study; finished cells are not run again");
   run_command->add_option("study", arguments.study, "study file (JSON)")->required();
-  run_command->add_option("-o,--output", arguments.directory,
-                          "folder of the result (default driftless-results/<study>)");
-  run_command->add_option("-t,--threads", arguments.threads, "threads (default all)")
+  run_command->add_option(
+      "-o,--output", arguments.directory,
+      "folder of the result (default: the study file's name without its ending, in "
+      "driftless-results/)");
+  run_command
+      ->add_option("-t,--threads", arguments.threads,
+                   "threads (default: as many processors as this process may use)")
       ->check(CLI::Range(1U, 4096U));
   run_command->add_flag("-q,--quiet", arguments.quiet, "no progress");
   run_command->callback([&] { run(arguments); });
@@ -138,6 +172,23 @@ int main(int argc, char** argv) {
   report_command->add_option("-o,--output", arguments.directory, "another folder");
   report_command->callback([&] { report(arguments); });
 
+  Question question;
+  auto* recommend_command = app.add_subcommand(
+      "recommend", "name the cheapest method and step within a tolerance, from finished results");
+  recommend_command->add_option("result", question.results, "result.json files or their folders")
+      ->required();
+  recommend_command->add_option(
+      "--tolerance", question.tolerance,
+      "largest error, as 0.5% or 0.005; a number for drifts and distances");
+  recommend_command->add_option("--observable", question.observable,
+                                "what is to be right (default equilibrium: both temperatures and "
+                                "the variance of the internal energy)");
+  recommend_command->add_option("--budget", question.budget,
+                                "core-s per unit time: name the most accurate "
+                                "method within this cost");
+  recommend_command->add_option("--scene", question.scene, "this scene alone");
+  recommend_command->callback([&] { fmt::print("{}", recommend(question)); });
+
   app.add_subcommand("methods", "list the integrators")->callback(print_methods);
   auto* scenes = app.add_subcommand("scenes", "list the scenes and every key they set");
   scenes->add_flag("--json", arguments.json, "JSON alone");
@@ -149,11 +200,26 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"study", "result"}));
   schema->callback([&] { print_schema(arguments.kind); });
 
+  BenchArguments bench;
+  auto* bench_command = app.add_subcommand("bench", "time the kernels, the scenes and the methods");
+  bench_command->add_flag("--quick", bench.quick, "fewer samples, no large system");
+  bench_command->add_option("--json", bench.json, "write the tables to this file too");
+  bench_command->add_option("-t,--threads", bench.threads, "list of numbers of threads, as 1,4")
+      ->delimiter(',')
+      ->check(CLI::Range(1U, 4096U));
+  bench_command->add_option("--particles", bench.particles, "list of sizes, as 3000,24000")
+      ->delimiter(',')
+      ->check(CLI::Range(least_bench_particles, std::size_t{100'000'000}));
+  bench_command->callback([&] { run_bench(bench); });
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const InputError& error) {
+    std::cerr << "driftless: " << error.what() << '\n';
+    return 2;
+  } catch (const ModuleError& error) {
     std::cerr << "driftless: " << error.what() << '\n';
     return 2;
   } catch (const std::exception& error) {

@@ -10,6 +10,8 @@
 #include <iterator>
 
 #include "build_info.hpp"
+#include "integrators/modules.hpp"
+#include "model/instruction_set.hpp"
 
 namespace driftless {
 namespace {
@@ -39,6 +41,7 @@ nlohmann::json provenance(unsigned threads, std::uint64_t seed, const std::strin
           {"compiler", build_info::compiler},
           {"flags", build_info::flags},
           {"cpu", processor()},
+          {"instructions", instruction_set()},
           {"threads", threads},
           {"seed", seed},
           {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
@@ -53,8 +56,14 @@ std::string fingerprint(const std::string& text) {
 
 std::string program_fingerprint() {
   static const std::string value = [] {
-    std::ifstream program("/proc/self/exe", std::ios::binary);
-    return fingerprint({std::istreambuf_iterator<char>(program), {}});
+    auto files = code_files();
+    files.emplace_back("/proc/self/exe");
+    std::string fingerprints;
+    for (const auto& file : files) {
+      std::ifstream code(file, std::ios::binary);
+      fingerprints += fingerprint({std::istreambuf_iterator<char>(code), {}});
+    }
+    return fingerprint(fingerprints);
   }();
   return value;
 }

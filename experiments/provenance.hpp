@@ -8,11 +8,12 @@ namespace driftless {
 /// "0.1.0", "0.1.0+3f2c1d8" or "0.1.0+3f2c1d8-dirty".
 std::string version();
 
-/// Version, commit, compiler, flags, processor, threads, seed, date (UTC) and the command that
-/// repeats the run.
+/// Version, commit, compiler, flags, processor, the instructions used of it, threads, seed, date
+/// (UTC) and the command that repeats the run.
 nlohmann::json provenance(unsigned threads, std::uint64_t seed, const std::string& command);
 
-/// A number that changes whenever this program does: results of another program are not reused.
+/// A number that changes whenever the code does, be it this program, the library as chosen for this
+/// processor, or a module of methods: results of other code are not reused.
 std::string program_fingerprint();
 
 /// 64 bits of a text as 16 hexadecimal digits (FNV-1a).

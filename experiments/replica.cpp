@@ -11,10 +11,12 @@ StepPlan::StepPlan(const Study& study, double time_step)
       steps_per_sample(driftless::steps_per_sample(study, time_step)) {}
 
 ReplicaResult run_replica(const PreparedScene& prepared, const Study& study,
-                          const MethodChoice& choice, double time_step, unsigned replica) {
+                          const MethodChoice& choice, double time_step, unsigned replica,
+                          unsigned threads) {
   const StepPlan plan(study, time_step);
   const auto integrator = find_method(choice.name)->make(choice.options);
   System system = prepared.start(replica);
+  system.set_threads(threads);
   ReplicaResult result;
   result.replica = replica;
   const auto advance = [&](std::uint64_t steps) {

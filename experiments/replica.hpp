@@ -33,8 +33,10 @@ struct StepPlan {
   std::uint64_t steps() const { return equilibrate + samples * steps_per_sample; }
 };
 
-/// Runs one replica to its end or its failure. A pure function of its arguments, bit for bit.
+/// Runs one replica to its end or its failure. A pure function of its arguments, bit for bit, for
+/// any number of threads.
 ReplicaResult run_replica(const PreparedScene& prepared, const Study& study,
-                          const MethodChoice& choice, double time_step, unsigned replica);
+                          const MethodChoice& choice, double time_step, unsigned replica,
+                          unsigned threads = 1);
 
 }  // namespace driftless

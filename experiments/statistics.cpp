@@ -1,6 +1,7 @@
 #include "experiments/statistics.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
@@ -106,6 +107,7 @@ void set_error(std::vector<Eigen::VectorXd> series, double rounding, Estimate& r
   }
   if (pooled.variance == 0.0) return;
   double variance_of_mean = pooled.sum / total;
+  result.degrees_of_freedom = pooled.degrees_of_freedom;
   result.error = std::sqrt(variance_of_mean) * student_factor(pooled.degrees_of_freedom);
   if (series.size() >= 2) {
     const AutocovarianceSum within = autocovariance_sum(series, count);
@@ -117,6 +119,7 @@ void set_error(std::vector<Eigen::VectorXd> series, double rounding, Estimate& r
     const double scatter = std::sqrt(between / total) * student_factor(count - 1.0);
     if (scatter_counts && scatter > result.error) {
       result.error = scatter;
+      result.degrees_of_freedom = count - 1.0;
       variance_of_mean = std::max(variance_of_mean, between / total);
     }
   }
@@ -125,10 +128,17 @@ void set_error(std::vector<Eigen::VectorXd> series, double rounding, Estimate& r
 
 }  // namespace
 
+double student_quantile(double degrees_of_freedom, double exceeded_with) {
+  if (degrees_of_freedom > 1e6) {
+    return boost::math::quantile(boost::math::complement(boost::math::normal(), exceeded_with));
+  }
+  const boost::math::students_t student(std::max(1.0, degrees_of_freedom));
+  return boost::math::quantile(boost::math::complement(student, exceeded_with));
+}
+
 double student_factor(double degrees_of_freedom) {
   if (degrees_of_freedom > 1e6) return 1.0;
-  const boost::math::students_t student(std::max(1.0, degrees_of_freedom));
-  return std::max(1.0, boost::math::quantile(student, 0.975) / 1.959963984540054);
+  return std::max(1.0, student_quantile(degrees_of_freedom, 0.025) / interval_quantile);
 }
 
 Estimate estimate(const std::vector<Eigen::MatrixXd>& replicas, const DerivedQuantity& derived) {
@@ -149,14 +159,6 @@ Estimate estimate(const std::vector<Eigen::MatrixXd>& replicas, const DerivedQua
 Estimate estimate_mean(const std::vector<Eigen::VectorXd>& replicas) {
   std::vector<Eigen::MatrixXd> matrices(replicas.begin(), replicas.end());
   return estimate(matrices, [](const Eigen::VectorXd& means) { return means[0]; });
-}
-
-std::vector<Estimate> estimate_each(const std::vector<Eigen::MatrixXd>& replicas,
-                                    const DerivedQuantity& derived) {
-  std::vector<Estimate> result;
-  result.reserve(replicas.size());
-  for (const Eigen::MatrixXd& replica : replicas) result.push_back(estimate({replica}, derived));
-  return result;
 }
 
 double agreement_z(const Estimate& one, const Estimate& other) {

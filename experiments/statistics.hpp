@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace driftless {
@@ -18,6 +19,9 @@ struct Estimate {
   /// The replicas differ by more than their fluctuations in time explain (F test at 1 %). The error
   /// then comes from the scatter of the replicas.
   bool replicas_disagree = false;
+  /// How well the error is known: the degrees of freedom that it was widened for. The standard
+  /// error itself is error / student_factor(degrees_of_freedom).
+  double degrees_of_freedom = std::numeric_limits<double>::infinity();
 };
 
 /// A quantity that depends on the means of the primary quantities, for example a ratio of two.
@@ -54,11 +58,6 @@ Estimate estimate(const std::vector<Eigen::MatrixXd>& replicas, const DerivedQua
 /// The same for the mean of one scalar quantity; one series per replica.
 Estimate estimate_mean(const std::vector<Eigen::VectorXd>& replicas);
 
-/// Each replica's own estimate, from nothing but its own samples, in the order given. Every replica
-/// needs at least one sample. Errors as for `estimate`.
-std::vector<Estimate> estimate_each(const std::vector<Eigen::MatrixXd>& replicas,
-                                    const DerivedQuantity& derived);
-
 /// Distance of two independent estimates in units of their common standard error, never negative,
 /// at most 1e6 (so also where both errors are zero), and 0 if they agree to rounding.
 double agreement_z(const Estimate& one, const Estimate& other);
@@ -67,6 +66,13 @@ double agreement_z(const Estimate& one, const Estimate& other);
 /// independent samples and for a constant series; never below 1/2.
 /// Throws std::invalid_argument if the series is empty or not finite.
 double autocorrelation_time(const Eigen::VectorXd& series);
+
+/// The normal law's 97.5 % quantile: +- so many standard errors make a 95 % interval.
+inline constexpr double interval_quantile = 1.959963984540054;
+
+/// What Student's variable with so many degrees of freedom exceeds with a probability above 0 and
+/// below 1/2; infinitely many make it normal. At least one degree is assumed.
+double student_quantile(double degrees_of_freedom, double exceeded_with);
 
 /// Student's 97.5 % quantile in units of the normal one: what a standard error with so many degrees
 /// of freedom is multiplied by so that +- 1.96 of it covers 95 %. At least one degree is assumed.

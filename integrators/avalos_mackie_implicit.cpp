@@ -25,7 +25,7 @@ class AvalosMackieImplicit : public Integrator {
         [&](const auto& start, const auto& end) {
           return end_point_momentum(fluid, start, end, dt);
         },
-        [&](const auto& start, const auto& end, double) {
+        [&](const auto& start, const auto& end, const auto&) {
           auto total = end_point_conduction(fluid, start, end, dt);
           if (fluid.has_friction()) total += heating(fluid, start, end, dt);
           return total;

@@ -23,10 +23,10 @@ class AvalosMackieMidpoint : public Integrator {
         [&](const auto& start, const auto& end) {
           return end_point_momentum(fluid, start, end, dt);
         },
-        [&](const auto& start, const auto& end, double momentum) {
+        [&](const auto& start, const auto& end, const auto& momentum) {
           auto total = end_point_conduction(fluid, start, end, dt);
-          const double f = momentum - fluid.repulsive_force(start.r) * dt;
-          const double work = 0.25 * f * (start.v + end.v);
+          const auto f = momentum - fluid.repulsive_force(start.r) * dt;
+          const auto work = 0.25 * f * (start.v + end.v);
           total.energy_i -= work;
           total.energy_j -= work;
           return total;

@@ -24,9 +24,7 @@ class EndPointIteration {
       system.count_solver_iteration();
       system.accumulate(
           trial_,
-          [&](const auto& start, const auto& end) {
-            return Transfer<double>{momentum(start, end), 0, 0};
-          },
+          [&](const auto& start, const auto& end) { return Transfer{momentum(start, end)}; },
           exchange_);
       set_velocities(system);
       system.accumulate(

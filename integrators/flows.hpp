@@ -31,6 +31,22 @@ Transfer<V> euler_conduction(const Fluid& fluid, const Pair<V>& pair, double dt)
   return {V(0), heat, -heat};
 }
 
+/// The transfer where a condition holds, otherwise none.
+template <class V, class Condition>
+Transfer<V> only_where(const Condition& condition, const Transfer<V>& transfer) {
+  return {select(condition, transfer.momentum, V(0)), select(condition, transfer.energy_i, V(0)),
+          select(condition, transfer.energy_j, V(0))};
+}
+
+/// The transfer that changes the relative velocity by dv, the pair's kinetic energy change taken
+/// from both internal energies in equal parts: exact in momentum and energy for any dv.
+template <class V>
+Transfer<V> change_velocity(const Fluid& fluid, const Pair<V>& pair, const V& dv) {
+  const V momentum = fluid.reduced_mass() * dv;
+  const V heat = -0.25 * momentum * (2 * pair.v + dv);
+  return {momentum, heat, heat};
+}
+
 /// Every exchange of a pair over dt from the state as it stands, conservative force included; what
 /// the fluid does not have costs nothing.
 template <class V>
@@ -57,6 +73,35 @@ Pair<V> after(const Fluid& fluid, Pair<V> pair, const Transfer<V>& transfer) {
   pair.u_i += transfer.energy_i;
   pair.u_j += transfer.energy_j;
   return pair;
+}
+
+/// Two exchanges of a pair, the second from the state that the first one leaves (or, with frozen
+/// temperatures, from the same one); in a reverse sweep the other way round.
+template <class V, class First, class Second>
+Transfer<V> one_after_the_other(const Fluid& fluid, const Pair<V>& pair, const Sweep& how,
+                                First&& first, Second&& second) {
+  const auto next = [&](const Transfer<V>& done) {
+    return how.energies == SweepEnergies::frozen ? pair : after(fluid, pair, done);
+  };
+  if (how.order == SweepOrder::forward) {
+    auto total = first(pair);
+    return total += second(next(total));
+  }
+  auto total = second(pair);
+  return total += first(next(total));
+}
+
+/// Friction of a pair, then its conduction, as far as the fluid has them; in a reverse sweep the
+/// other way round.
+template <class V, class Friction, class Conduction>
+Transfer<V> friction_and_conduction(const Fluid& fluid, const Pair<V>& pair, const Sweep& how,
+                                    Friction&& friction, Conduction&& conduction) {
+  return one_after_the_other(
+      fluid, pair, how,
+      [&](const Pair<V>& seen) { return fluid.has_friction() ? friction(seen) : Transfer<V>{}; },
+      [&](const Pair<V>& seen) {
+        return fluid.has_conduction() ? conduction(seen) : Transfer<V>{};
+      });
 }
 
 /// Velocity Verlet with the conservative forces alone.

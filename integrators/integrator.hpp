@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -53,6 +55,9 @@ struct Method {
   bool consistent = true;         ///< its limit of vanishing step is the model of theory
   bool galilean = true;           ///< a uniform velocity changes nothing
   bool order_independent = true;  ///< no order of pairs enters
+  /// With the default options the exact law of an isolated pair is left as it is by every step,
+  /// however large.
+  bool pair_law_exact = false;
   /// Whether options leave it consistent in a fluid, where that depends on them; null: they do.
   bool (*stays_consistent)(const Options&, const Fluid&) = nullptr;
   std::vector<FrictionClosure> closures = {};
@@ -60,12 +65,26 @@ struct Method {
   std::unique_ptr<Integrator> (*make)(const Options&) = nullptr;
 };
 
-/// Every registered method, in the order of registry.cpp, then of register_method calls.
+/// Every registered method, in the order of methods.hpp, then of register_method calls. The first
+/// use loads the modules that the environment names; throws ModuleError (modules.hpp).
 const std::vector<const Method*>& methods();
-/// The method of a name, or nullptr.
+/// The method of a name, or nullptr. Loads and throws as methods() does.
 const Method* find_method(std::string_view name);
-/// Adds a method from outside the library; throws std::invalid_argument if the name is taken.
+/// Adds a copy of a method from outside the library; throws std::invalid_argument if the name is
+/// taken, or if there is no name or nothing that makes it.
 void register_method(const Method& method);
+
+/// Registers a method while its module is loaded: `const Registration registered(my_method);`
+/// behind the method in its file. What is wrong is told when the module has been loaded.
+class Registration {
+ public:
+  explicit Registration(const Method& method) noexcept
+      : Registration(method, sizeof(Method), sizeof(System)) {}
+
+ private:
+  /// The sizes as the method's file knows them: others than the library's are of other headers.
+  Registration(const Method& method, std::size_t method_size, std::size_t system_size) noexcept;
+};
 
 /// Why the method cannot run the fluid, in one sentence; nothing if it can.
 std::optional<std::string> refusal(const Method& method, const Fluid& fluid);

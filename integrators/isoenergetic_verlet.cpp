@@ -1,4 +1,4 @@
-#include "integrators/flows.hpp"
+#include "integrators/kept_impulse.hpp"
 #include "integrators/methods.hpp"
 
 namespace driftless {
@@ -16,54 +16,30 @@ namespace {
 class IsoenergeticVerlet : public Integrator {
  public:
   void step(System& system, double dt) override {
-    if (impulse_.momentum.size() != system.size() || evaluated_for_ != dt) {
-      evaluate(system, dt, first_evaluation);
-    }
+    const Fluid& fluid = system.fluid();
+    const auto exchange = [&](const auto& pair) { return impulse_of(fluid, pair, dt); };
+    impulse_.start(system, dt, exchange);
     half_kick(system, dt);
     const auto potential = system.potential_shares();
     system.move(dt);
-    evaluate(system, dt, every_evaluation);
+    impulse_.renew(system, dt, exchange);
     half_kick(system, dt);
-    if (!system.fluid().has_repulsion()) return;
+    if (!fluid.has_repulsion()) return;
     const auto& moved = system.potential_shares();
     system.update([&](std::size_t i, Vector&, double& u) { u -= moved[i] - potential[i]; });
   }
 
-  std::vector<double> save() const override {
-    std::vector<double> saved = {evaluated_for_};
-    for (const auto& momentum : impulse_.momentum) {
-      saved.insert(saved.end(), momentum.begin(), momentum.end());
-    }
-    saved.insert(saved.end(), impulse_.energy.begin(), impulse_.energy.end());
-    return saved;
-  }
-
-  void load(const std::vector<double>& saved) override {
-    if (saved.empty()) return;  // saved before the first step
-    const std::size_t particles = (saved.size() - 1) / 4;
-    evaluated_for_ = saved[0];
-    impulse_.reset(particles);
-    for (std::size_t i = 0; i < particles; ++i) {
-      impulse_.momentum[i] = Vector(&saved[1 + 3 * i]);
-      impulse_.energy[i] = saved[1 + 3 * particles + i];
-    }
-  }
+  std::vector<double> save() const override { return impulse_.save(); }
+  void load(const std::vector<double>& saved) override { impulse_.load(saved); }
 
  private:
-  static constexpr unsigned every_evaluation = 0, first_evaluation = 1;  // stages of the noise
-
-  /// Impulses F dt and heats q dt of friction, noise and conduction.
-  void evaluate(System& system, double dt, unsigned stage) {
-    const Fluid& fluid = system.fluid();
-    system.accumulate(
-        [&](const auto& pair) {
-          Transfer<double> total;
-          if (fluid.has_friction()) total.momentum = euler_friction(fluid, pair, dt).momentum;
-          if (fluid.has_conduction()) total += euler_conduction(fluid, pair, dt);
-          return total;
-        },
-        impulse_, stage);
-    evaluated_for_ = dt;
+  /// Impulse F dt and heat q dt of friction, noise and conduction.
+  template <class V>
+  static Transfer<V> impulse_of(const Fluid& fluid, const Pair<V>& pair, double dt) {
+    Transfer<V> total;
+    if (fluid.has_friction()) total.momentum = euler_friction(fluid, pair, dt).momentum;
+    if (fluid.has_conduction()) total += euler_conduction(fluid, pair, dt);
+    return total;
   }
 
   void half_kick(System& system, double dt) const {
@@ -71,13 +47,12 @@ class IsoenergeticVerlet : public Integrator {
     const auto& force = system.conservative_force();
     system.update([&](std::size_t i, Vector& v, double& u) {
       const Vector before = v;
-      v += (force[i] * dt + impulse_.momentum[i]) / (2 * m);
-      u += impulse_.energy[i] / 2 - m * (v - before).dot(v + before) / 2;
+      v += (force[i] * dt + impulse_.momentum(i)) / (2 * m);
+      u += impulse_.energy(i) / 2 - m * (v - before).dot(v + before) / 2;
     });
   }
 
-  Exchange impulse_;
-  double evaluated_for_ = 0;
+  KeptImpulse impulse_;
 };
 
 }  // namespace

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <deque>
+#include <exception>
 #include <stdexcept>
+#include <utility>
 
 #include "integrators/methods.hpp"
+#include "integrators/modules.hpp"
 
 namespace driftless {
 namespace {
@@ -10,6 +13,7 @@ namespace {
 struct Registry {
   std::vector<const Method*> all;
   std::deque<Method> from_outside;  // a deque keeps the addresses
+  std::string complaint;            // of the first Registration that failed
 
   Registry() {
 #define DRIFTLESS_LIST(name) all.push_back(&name);
@@ -23,24 +27,54 @@ Registry& registry() {
   return instance;
 }
 
-}  // namespace
-
-const std::vector<const Method*>& methods() { return registry().all; }
-
-const Method* find_method(std::string_view name) {
-  const auto& all = methods();
+const Method* find_registered(std::string_view name) {
+  const auto& all = registry().all;
   const auto found =
       std::find_if(all.begin(), all.end(), [&](const Method* m) { return m->name == name; });
   return found == all.end() ? nullptr : *found;
 }
 
+}  // namespace
+
+const std::vector<const Method*>& methods() {
+  load_methods_of_environment();
+  return registry().all;
+}
+
+const Method* find_method(std::string_view name) {
+  load_methods_of_environment();
+  return find_registered(name);
+}
+
 void register_method(const Method& method) {
-  if (find_method(method.name)) {
+  if (method.name.empty() || method.make == nullptr) {
+    throw std::invalid_argument("a method has no name, or nothing that makes it");
+  }
+  if (find_registered(method.name)) {
     throw std::invalid_argument("a method named " + std::string(method.name) + " exists already");
   }
   auto& all = registry();
   all.all.push_back(&all.from_outside.emplace_back(method));
 }
+
+// It runs while the loader starts a module, where nothing may be thrown.
+Registration::Registration(const Method& method, std::size_t method_size,
+                           std::size_t system_size) noexcept {
+  try {
+    // Of another size, the method must not even be read.
+    if (method_size != sizeof(Method) || system_size != sizeof(System)) {
+      throw std::invalid_argument("it was compiled with headers of another version of driftless");
+    }
+    register_method(method);
+  } catch (const std::exception& error) {
+    auto& complaint = registry().complaint;
+    if (complaint.empty()) complaint = error.what();
+  }
+}
+
+std::size_t detail::registered_methods() { return registry().all.size(); }
+
+std::string detail::take_complaint() { return std::exchange(registry().complaint, {}); }
 
 std::optional<std::string> refusal(const Method& method, const Fluid& fluid) {
   const auto closure = fluid.parameters().friction_closure;

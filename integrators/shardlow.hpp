@@ -1,8 +1,33 @@
 #pragma once
 
-#include "integrators/flows.hpp"
+#include "integrators/choice.hpp"
+#include "integrators/relaxation.hpp"
 
 namespace driftless {
+
+/// What the methods of Shardlow's family leave open.
+struct ShardlowChoices {
+  /// Leave the noise-induced friction out.
+  bool as_published = false;
+  /// The exact Ornstein-Uhlenbeck update in place of Shardlow's half-implicit one.
+  bool exponential = false;
+  /// Temperatures of a sweep: fresh for every pair, or those at its start, as LAMMPS does.
+  SweepEnergies temperatures = SweepEnergies::fresh;
+};
+
+/// The options of the choices, by the default of `update`.
+inline std::vector<OptionSpec> shardlow_options(const std::string& update) {
+  return {{"as_published", false, "leave the noise-induced friction out"},
+          {"update", update, "of a pair's velocity: \"half-implicit\" or \"exponential\""},
+          {"temperatures", std::string("fresh"), "in a sweep: \"fresh\" or \"frozen\""}};
+}
+
+inline ShardlowChoices shardlow_choices(const Method& method, const Options& options) {
+  const auto temperatures = choice(method, options, "temperatures", {"fresh", "frozen"});
+  return {option<bool>(method, options, "as_published"),
+          choice(method, options, "update", {"half-implicit", "exponential"}) == "exponential",
+          temperatures == "frozen" ? SweepEnergies::frozen : SweepEnergies::fresh};
+}
 
 /// The pair update of Shardlow [SIAM J. Sci. Comput. 24, 1267 (2003)] with the pair's kinetic
 /// energy change put back into its internal energies [Lisal, Brennan, Avalos, J. Chem. Phys. 135,
@@ -10,20 +35,22 @@ namespace driftless {
 ///   v1 = v + (1/mu) (-zeta v dt/2 + Gamma dt^{1/2} W/2)
 ///   v' = [v1 + Gamma dt^{1/2} W/(2 mu)] / (1 + zeta dt/(2 mu))
 ///   f = mu (v' - v),  u_i -= mu (v'^2 - v^2)/4,  u_j likewise
-/// Freezing Gamma leaves the noise-induced friction out: zeta is raised by it unless
-/// `as_published`.
+/// or, `exponential`, with v' from the exact solution at these coefficients. Freezing Gamma leaves
+/// the noise-induced friction out: zeta is raised by it unless `as_published`.
 template <class V>
 Transfer<V> shardlow_friction(const Fluid& fluid, const Pair<V>& pair, double dt,
-                              bool as_published) {
+                              const ShardlowChoices& choices) {
   using std::sqrt;
   const double mu = fluid.reduced_mass();
   const auto law = fluid.friction(pair);
-  const V zeta = as_published ? law.friction : law.friction + law.induced;
+  const V zeta = choices.as_published ? law.friction : law.friction + law.induced;
+  if (choices.exponential) {
+    return change_velocity(fluid, pair, ornstein_uhlenbeck(pair, zeta, law.noise_squared, mu, dt));
+  }
   const V kick = sqrt(law.noise_squared * dt) * pair.noise;
   const V explicit_half = pair.v + (kick - zeta * pair.v * dt) / (2 * mu);
   const V v = (explicit_half + kick / (2 * mu)) / (1 + zeta * dt / (2 * mu));
-  const V heat = -0.25 * mu * (v - pair.v) * (v + pair.v);
-  return {mu * (v - pair.v), heat, heat};
+  return change_velocity(fluid, pair, v - pair.v);
 }
 
 /// Without the noise-induced friction the limit is the model only where there is none.
@@ -35,29 +62,21 @@ inline bool shardlow_is_consistent(const Fluid& fluid, bool as_published) {
 
 /// Friction of a pair, then its conduction, at dt; in a reverse sweep the other way round.
 template <class V>
-Transfer<V> shardlow_exchange(const Fluid& fluid, const Pair<V>& pair, double dt, SweepOrder order,
-                              bool as_published) {
-  const auto friction = [&](const Pair<V>& state) {
-    return fluid.has_friction() ? shardlow_friction(fluid, state, dt, as_published) : Transfer<V>{};
-  };
-  const auto conduction = [&](const Pair<V>& state) {
-    return fluid.has_conduction() ? euler_conduction(fluid, state, dt) : Transfer<V>{};
-  };
-  if (order == SweepOrder::forward) {
-    auto total = friction(pair);
-    return total += conduction(after(fluid, pair, total));
-  }
-  auto total = conduction(pair);
-  return total += friction(after(fluid, pair, total));
+Transfer<V> shardlow_exchange(const Fluid& fluid, const Pair<V>& pair, double dt, const Sweep& how,
+                              const ShardlowChoices& choices) {
+  return friction_and_conduction(
+      fluid, pair, how,
+      [&](const Pair<V>& seen) { return shardlow_friction(fluid, seen, dt, choices); },
+      [&](const Pair<V>& seen) { return euler_conduction(fluid, seen, dt); });
 }
 
 /// All pairs one after the other over dt.
 inline void shardlow_sweep(System& system, double dt, SweepOrder order, unsigned stage,
-                           bool as_published) {
+                           const ShardlowChoices& choices) {
   const Fluid& fluid = system.fluid();
-  system.sweep(
-      [&](const auto& pair) { return shardlow_exchange(fluid, pair, dt, order, as_published); },
-      {.order = order, .stage = stage});
+  const Sweep how{.order = order, .stage = stage, .energies = choices.temperatures};
+  system.sweep([&](const auto& pair) { return shardlow_exchange(fluid, pair, dt, how, choices); },
+               how);
 }
 
 }  // namespace driftless

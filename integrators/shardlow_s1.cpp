@@ -5,20 +5,22 @@ namespace driftless {
 namespace {
 
 /// Shardlow splitting, one sweep [Shardlow 2003, S1; Lisal, Brennan, Avalos 2011, SSA-VV]: every
-/// pair one after the other by the update of shardlow.hpp, conduction pairwise within it, energies
-/// fresh for each pair; then velocity Verlet with the conservative forces alone. Conserves
-/// momentum, and energy to rounding without a potential; with one the Verlet part drifts.
+/// pair one after the other by the update of shardlow.hpp, conduction pairwise within it; then
+/// velocity Verlet with the conservative forces alone. `update` "exponential" solves a pair's
+/// velocity exactly at frozen coefficients; `temperatures` "frozen" are those at the start of the
+/// sweep, as in LAMMPS. Conserves momentum, and energy to rounding without a potential; with one
+/// the Verlet part drifts.
 class ShardlowS1 : public Integrator {
  public:
-  explicit ShardlowS1(bool as_published) : as_published_(as_published) {}
+  explicit ShardlowS1(const ShardlowChoices& choices) : choices_(choices) {}
 
   void step(System& system, double dt) override {
-    shardlow_sweep(system, dt, SweepOrder::forward, 0, as_published_);
+    shardlow_sweep(system, dt, SweepOrder::forward, 0, choices_);
     velocity_verlet(system, dt);
   }
 
  private:
-  bool as_published_;
+  ShardlowChoices choices_;
 };
 
 }  // namespace
@@ -37,9 +39,9 @@ const Method shardlow_s1 = {
           return shardlow_is_consistent(fluid, option<bool>(shardlow_s1, options, "as_published"));
         },
     .closures = {FrictionClosure::noise, FrictionClosure::friction},
-    .options = {{"as_published", false, "leave the noise-induced friction out"}},
+    .options = shardlow_options("half-implicit"),
     .make = [](const Options& options) -> std::unique_ptr<Integrator> {
-      return std::make_unique<ShardlowS1>(option<bool>(shardlow_s1, options, "as_published"));
+      return std::make_unique<ShardlowS1>(shardlow_choices(shardlow_s1, options));
     }};
 
 }  // namespace driftless

@@ -8,20 +8,20 @@ namespace {
 /// Avalos 2011]: half a sweep, velocity Verlet with the conservative forces alone, half a sweep in
 /// reverse order with noise of its own. Noise-free it is of second order under the closure
 /// `friction` without conduction; the friction frozen at the start of a pair's update under the
-/// closure `noise`, and the Euler step of conduction, leave it at first order. Conserves momentum,
-/// and energy to rounding without a potential.
+/// closure `noise`, and the Euler step of conduction, leave it at first order. Options as in
+/// shardlow-s1. Conserves momentum, and energy to rounding without a potential.
 class ShardlowS2 : public Integrator {
  public:
-  explicit ShardlowS2(bool as_published) : as_published_(as_published) {}
+  explicit ShardlowS2(const ShardlowChoices& choices) : choices_(choices) {}
 
   void step(System& system, double dt) override {
-    shardlow_sweep(system, dt / 2, SweepOrder::forward, 0, as_published_);
+    shardlow_sweep(system, dt / 2, SweepOrder::forward, 0, choices_);
     velocity_verlet(system, dt);
-    shardlow_sweep(system, dt / 2, SweepOrder::reverse, 1, as_published_);
+    shardlow_sweep(system, dt / 2, SweepOrder::reverse, 1, choices_);
   }
 
  private:
-  bool as_published_;
+  ShardlowChoices choices_;
 };
 
 }  // namespace
@@ -40,9 +40,9 @@ const Method shardlow_s2 = {
           return shardlow_is_consistent(fluid, option<bool>(shardlow_s2, options, "as_published"));
         },
     .closures = {FrictionClosure::noise, FrictionClosure::friction},
-    .options = {{"as_published", false, "leave the noise-induced friction out"}},
+    .options = shardlow_options("half-implicit"),
     .make = [](const Options& options) -> std::unique_ptr<Integrator> {
-      return std::make_unique<ShardlowS2>(option<bool>(shardlow_s2, options, "as_published"));
+      return std::make_unique<ShardlowS2>(shardlow_choices(shardlow_s2, options));
     }};
 
 }  // namespace driftless

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "model/lanes.hpp"
 
@@ -58,14 +59,32 @@ void CellGrid::assign(const State& state, const Threads& threads) {
 }
 
 void CellGrid::order(const State& state, const Threads& threads) {
+  // Every thread counts a share of the particles, and has its own places in each cell.
   const auto cells = static_cast<std::size_t>(count_.prod());
-  begin_.assign(cells + 1, 0);
-  for (const auto cell : cell_) ++begin_[cell + 1];
-  for (std::size_t c = 1; c <= cells; ++c) begin_[c] += begin_[c - 1];
-  next_.assign(begin_.begin(), begin_.end() - 1);
-  for (std::size_t i = 0; i < state.size(); ++i) {
-    entry_[next_[cell_[i]]++] = (std::uint64_t{state.id[i]} << 32) | i;
+  const std::size_t shares = threads.count();
+  const auto share = [&](std::size_t n) { return state.size() * n / shares; };
+  next_.resize(shares * cells);
+  const std::size_t tasks[] = {shares};
+  threads.phases(tasks, [&](unsigned, std::size_t, std::size_t n) {
+    std::uint32_t* const counts = next_.data() + n * cells;
+    std::fill_n(counts, cells, 0);
+    for (std::size_t i = share(n); i < share(n + 1); ++i) ++counts[cell_[i]];
+  });
+  begin_.resize(cells + 1);
+  std::uint32_t before = 0;
+  for (std::size_t c = 0; c < cells; ++c) {
+    begin_[c] = before;
+    for (std::size_t n = 0; n < shares; ++n) {
+      before += std::exchange(next_[n * cells + c], before);
+    }
   }
+  begin_[cells] = before;
+  threads.phases(tasks, [&](unsigned, std::size_t, std::size_t n) {
+    std::uint32_t* const next = next_.data() + n * cells;
+    for (std::size_t i = share(n); i < share(n + 1); ++i) {
+      entry_[next[cell_[i]]++] = (std::uint64_t{state.id[i]} << 32) | i;
+    }
+  });
   threads.ranges(cells, [&](std::size_t first, std::size_t last) {
     for (std::size_t c = first; c < last; ++c) {
       const auto from = entry_.begin() + begin_[c], to = entry_.begin() + begin_[c + 1];

@@ -4,16 +4,6 @@
 
 namespace driftless {
 
-Vector Box::wrap(const Vector& position) const {
-  Vector wrapped;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double length = lengths[axis];
-    const double x = position[axis] - length * std::floor(position[axis] / length);
-    wrapped[axis] = x >= length ? 0 : x;  // rounding may put a tiny negative on the upper edge
-  }
-  return wrapped;
-}
-
 Vector Box::minimum_image(const Vector& difference) const {
   Vector shortest;
   for (int axis = 0; axis < 3; ++axis) {

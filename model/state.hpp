@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -38,6 +39,16 @@ struct Box {
   /// The shortest image of a difference of two positions.
   Vector minimum_image(const Vector& difference) const;
 };
+
+inline Vector Box::wrap(const Vector& position) const {
+  Vector wrapped;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = lengths[axis];
+    const double x = position[axis] - length * std::floor(position[axis] / length);
+    wrapped[axis] = x >= length ? 0 : x;  // rounding may put a tiny negative on the upper edge
+  }
+  return wrapped;
+}
 
 /// What every particle receives in one stage of a step.
 struct Exchange {

@@ -1,6 +1,7 @@
 #include "model/system.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <stdexcept>
 
@@ -124,14 +125,16 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
     if (trial) pass.trial(particles);
     pass.run(kernel, 0, count);
   });
-  total.reset(size());
   scatter_sums(total.momentum, total.energy);
   count_visit(!kept, false);
 }
 
 void System::for_each_chunk(
     FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer) {
-  sums_.assign(size(), {});
+  sums_.resize(size());
+  for_each_particle([&](std::size_t begin, std::size_t end) {
+    std::fill(sums_.data() + begin, sums_.data() + end, Quadruple{});
+  });
   threads_.phases(pairs_.colours(), [&](unsigned thread, std::size_t colour, std::size_t task) {
     PairBlock& block = pairs_.block(colour, task);
     PairPass& pass = passes_[thread];
@@ -145,6 +148,8 @@ void System::for_each_chunk(
 }
 
 void System::scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy) const {
+  momentum.resize(size());
+  energy.resize(size());
   const auto& place = cells_.place();
   for_each_particle([&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
@@ -251,12 +256,16 @@ void System::set_motion(const Motion& motion) {
 }
 
 void System::check(std::vector<std::uint32_t> failed) const {
-  bool sound = failed.empty();
+  std::atomic<bool> sound = failed.empty();
   const auto is_sound = [&](std::size_t i) {
     const double u = state_.internal_energy[i];
     return u > 0 && std::isfinite(u) && std::isfinite(state_.velocity[i].squaredNorm());
   };
-  for (std::size_t i = 0; i < size(); ++i) sound = sound & is_sound(i);
+  for_each_particle([&](std::size_t begin, std::size_t end) {
+    bool all = true;
+    for (std::size_t i = begin; i < end; ++i) all = all & is_sound(i);
+    if (!all) sound = false;
+  });
   if (sound) return;
   bool negative = !failed.empty();
   for (std::size_t i = 0; i < size(); ++i) {
@@ -283,26 +292,33 @@ void System::kick(double duration) {
 void System::move(double duration) {
   if (frozen_) return;
   check();
+  std::atomic<bool> inside = true;
   for_each_particle([&](std::size_t begin, std::size_t end) {
+    bool all = true;
     for (std::size_t i = begin; i < end; ++i) {
       state_.position[i] = box_.wrap(state_.position[i] + duration * state_.velocity[i]);
+      all = all & box_.contains(state_.position[i]);
     }
+    if (!all) inside = false;
   });
   ++positions_version_;
+  if (inside) return;
   std::vector<std::uint32_t> lost;
   for (std::size_t i = 0; i < size(); ++i) {
     if (!box_.contains(state_.position[i])) lost.push_back(state_.id[i]);
   }
   // So far beyond the box that rounding leaves no image inside.
-  if (!lost.empty()) throw StepFailure(FailureCause::non_finite, std::move(lost));
+  throw StepFailure(FailureCause::non_finite, std::move(lost));
 }
 
 void System::renew_conservative() {
   if (conservative_version_ == positions_version_) return;
   conservative_version_ = positions_version_;
-  force_.assign(size(), Vector::Zero());
-  potential_share_.assign(size(), 0.0);
-  if (!fluid_.has_repulsion()) return;
+  if (!fluid_.has_repulsion()) {
+    force_.assign(size(), Vector::Zero());
+    potential_share_.assign(size(), 0.0);
+    return;
+  }
   find_pairs();
   const auto repulsion = [&](const auto& pair) {
     const auto share = 0.5 * fluid_.potential(pair.r);

@@ -175,7 +175,7 @@ TEST(Campaign, ObservablesOfTheInternalEnergyNeedTimeToBeResolved) {
   EXPECT_EQ(observables["kinetic_temperature"]["status"], "ok");
   EXPECT_FALSE(result["scenes"][0]["resolves_internal_energy"]);
   EXPECT_NEAR(result["scenes"][0]["relaxation_time"].get<double>(), 253, 1);
-  EXPECT_TRUE(passing_bound(cell_of(result, "shardlow-s1", 0.1), "equilibrium").is_null());
+  EXPECT_FALSE(worst_deviation(cell_of(result, "shardlow-s1", 0.1), "equilibrium"));
   for (const auto& answer : result["answers"]) {
     if (answer["observable"] == "internal_energy_variance") {
       EXPECT_TRUE(answer["method"].is_null());
@@ -185,7 +185,9 @@ TEST(Campaign, ObservablesOfTheInternalEnergyNeedTimeToBeResolved) {
 
 TEST(Campaign, ObservablesOfTheKineticEnergyNeedTimeToo) {
   Folder folder("kinetic");
-  const auto result = run(small_study(), folder.path());  // 1 and 4 time units, u takes 0.09
+  // 1 and 4 time units, u takes 0.09. One replica: of more the last, started off equilibrium, may
+  // well disagree so early.
+  const auto result = run(small_study(R"({"replicas": 1})"), folder.path());
   const auto& observables = cell_of(result, "shardlow-s1", 0.01)["observables"];
   EXPECT_NEAR(result["scenes"][0]["kinetic_relaxation_time"].get<double>(), 1.878, 0.001);
   EXPECT_EQ(observables["kinetic_temperature"]["status"], "not_resolved");
@@ -299,6 +301,9 @@ TEST(Report, SummaryNamesTheAnswerAndTheFailures) {
   EXPECT_NE(text.find("| averaged-drift "), std::string::npos);
   EXPECT_NE(text.find("negative_internal_energy (3 of 3)"), std::string::npos);
   EXPECT_NE(text.find("not applicable"), std::string::npos);
+  // Values beside their bounds, never a bound alone.
+  EXPECT_EQ(text.find("| <= "), std::string::npos) << text;
+  EXPECT_EQ(text.find("e+0"), std::string::npos) << text;
   EXPECT_NE(text.find("driftless run small.json"), std::string::npos);
 }
 

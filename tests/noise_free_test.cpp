@@ -8,6 +8,7 @@
 
 #include "integrators/flows.hpp"
 #include "integrators/reference.hpp"
+#include "tests/method_names.hpp"
 #include "tests/small_system.hpp"
 
 // In the limit k -> 0 the model is a set of ordinary differential equations. The reference solves
@@ -263,7 +264,8 @@ std::string broken_claim(const Method& method) {
       const auto found = convergence(method, terms, reference(terms));
       lowest = std::min(lowest, found.order);
       if (!method.consistent) {
-        if (found.order > 0.1 || found.error < 1e-3) return terms.name() + ": it does converge";
+        // Pairs that jump, too, are at scattered distances of the limit, not at shrinking ones.
+        if (found.order > 0.4 || found.error < 1e-3) return terms.name() + ": it does converge";
       } else if (found.order < method.noise_free_order - 0.2 || found.error > 1e-2) {
         return terms.name() + ": order " + std::to_string(found.order) + ", error " +
                std::to_string(found.error);
@@ -296,7 +298,7 @@ TEST_P(NoiseFree, ConvergesWithAPotentialToo) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, NoiseFree, ::testing::ValuesIn(methods()));
+INSTANTIATE_TEST_SUITE_P(Methods, NoiseFree, ::testing::ValuesIn(methods()), test_name);
 
 // With the closure `friction` nothing in a pair's friction depends on its temperatures, and the
 // symmetric sweep is of second order. The closure `noise` changes zeta within the pair's update,
@@ -347,7 +349,8 @@ class FaultyEuler : public Integrator {
  public:
   void step(System& system, double dt) override {
     const Fluid& fluid = system.fluid();
-    system.accumulate([&](const auto& pair) { return Fault{}(fluid, pair, dt); }, exchange_);
+    system.accumulate([&](const Pair<double>& pair) { return Fault{}(fluid, pair, dt); },
+                      exchange_);
     system.move(dt);
     system.apply(exchange_);
   }

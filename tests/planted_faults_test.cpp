@@ -89,7 +89,7 @@ TEST(PlantedFaults, PairTemperatureWithoutTheHalf) {
 TEST(PlantedFaults, MissingNoiseInducedFriction) {
   const auto bench = small_capacity(FrictionClosure::friction, HeatForm::inverse_temperature);
   expect_wrong_law(bench, scheme(with_friction([](auto& law) { law.induced = 0; })));
-  for (const auto* name : {"shardlow-s1", "shardlow-s2"}) {
+  for (const auto* name : {"shardlow-s1", "shardlow-s2", "shardlow-aboba"}) {
     expect_wrong_law(bench, registered(name, {{"as_published", true}}));
   }
 }

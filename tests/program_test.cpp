@@ -64,8 +64,8 @@ class Program : public testing::Test {
 
 TEST_F(Program, HelpAndVersionOfEverything) {
   for (const auto* arguments :
-       {"--help", "--version", "run --help", "check --help", "report --help", "methods --help",
-        "scenes --help", "observables --help", "schema --help"}) {
+       {"--help", "--version", "run --help", "check --help", "report --help", "recommend --help",
+        "methods --help", "scenes --help", "observables --help", "schema --help"}) {
     const auto outcome = call(arguments);
     EXPECT_EQ(outcome.code, 0) << arguments;
     EXPECT_FALSE(outcome.text.empty()) << arguments;
@@ -83,6 +83,10 @@ TEST_F(Program, ListsMethodsScenesObservablesAndSchemas) {
   for (const auto* name : {"mackie-1999", "soft-fluid", "two-body"}) {
     EXPECT_NE(scenes.find(name), std::string::npos) << name;
   }
+  // Also what a preset's own start has no use for.
+  for (const auto* key : {"initial_velocities", "initial_velocity_spread", "initial_temperature"}) {
+    EXPECT_NE(scenes.find(std::string("  ") + key), std::string::npos) << key;
+  }
   EXPECT_NE(call("observables").text.find("internal_energy_variance"), std::string::npos);
   for (const auto* kind : {"study", "result"}) {
     EXPECT_TRUE(json::parse(call(std::string("schema ") + kind).text).contains("$schema")) << kind;
@@ -90,8 +94,9 @@ TEST_F(Program, ListsMethodsScenesObservablesAndSchemas) {
 }
 
 TEST_F(Program, WrongUseEndsWithTwo) {
-  for (const auto* arguments : {"", "nonsense", "run", "schema", "schema nonsense", "run a b c",
-                                "run study.json --threads 0"}) {
+  for (const auto* arguments :
+       {"", "nonsense", "run", "schema", "schema nonsense", "run a b c",
+        "run study.json --threads 0", "recommend", "recommend --budget 1"}) {
     EXPECT_EQ(call(arguments).code, 2) << arguments;
   }
 }
@@ -141,6 +146,119 @@ TEST_F(Program, RunWritesResultSummaryAndPage) {
   const auto again = call("report " + output);
   EXPECT_EQ(again.code, 0);
   EXPECT_NE(again.text.find("averaged-drift"), std::string::npos);
+}
+
+TEST_F(Program, CheckWarnsOfWhatIsTooShortAndOfMethodsThatDoNotApply) {
+  const auto study = write("short.json", R"({"format": "driftless-study/1",
+      "scenes": [{"preset": "mackie-1999", "particles": 60, "friction_closure": "friction"},
+                 {"preset": "mackie-1999", "particles": 60, "heat_form": "none"}],
+      "methods": ["espanol", "marsh-coveney", "shardlow-s1"], "time_steps": [0.02],
+      "duration": {"equilibrate": 10, "measure": 40, "sample_every": 0.1}})");
+  const auto outcome = call("check " + study);
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_NE(outcome.text.find("warning: espanol and marsh-coveney do not apply to "),
+            std::string::npos)
+      << outcome.text;
+  EXPECT_NE(outcome.text.find("internal energies relax in about 253, which takes equilibrate "
+                              "1.26e+03 and measure 5.06e+03"),
+            std::string::npos)
+      << outcome.text;
+  EXPECT_NE(outcome.text.find("a valid study of 2 scenes, 3 methods, 1 time step and 2 replicas"),
+            std::string::npos)
+      << outcome.text;
+  EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 3) << outcome.text;
+}
+
+TEST_F(Program, AStudyInWhichNoMethodAppliesEndsWithTwo) {
+  const auto study = write("none.json", R"({"format": "driftless-study/1",
+      "scene": {"preset": "mackie-1999", "particles": 60, "friction_closure": "friction"},
+      "methods": ["espanol"], "time_steps": [0.02],
+      "duration": {"equilibrate": 10, "measure": 40, "sample_every": 0.1}})");
+  const auto output = folder_ / "output";
+  for (const auto& verb : {std::string("check "), "run -o " + output.string() + " "}) {
+    const auto outcome = call(verb + study);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
+    EXPECT_NE(outcome.text.find("no method of the study applies to any of its scenes: espanol is"),
+              std::string::npos)
+        << outcome.text;
+  }
+  EXPECT_FALSE(fs::exists(output));
+}
+
+TEST_F(Program, RecommendReadsWhatRunWrote) {
+  const auto output = (folder_ / "output").string();
+  ASSERT_EQ(call("run -q " + good_study() + " -o " + output).code, 0);
+  const auto outcome =
+      call("recommend " + output + " --tolerance 50% --observable " + "internal_energy_variance");
+  EXPECT_EQ(outcome.code, 0) << outcome.text;
+  EXPECT_EQ(
+      outcome.text.find("For mackie-1999, to have the internal energy variance within 50 %: "), 0U)
+      << outcome.text;
+  const auto bad = call("recommend " + output + " --tolerance much");
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_EQ(std::count(bad.text.begin(), bad.text.end(), '\n'), 1) << bad.text;
+}
+
+TEST_F(Program, AnInterruptedRunSaysWhatIsFinishedAndHowItGoesOn) {
+  const auto study = good_study(4000);
+  const auto output = folder_ / "output", errors = folder_ / "errors";
+  for (const auto& [signal, code] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}}) {
+    fs::remove(output / "plan.json");
+    const pid_t child = fork();
+    if (child == 0) {
+      ::signal(SIGINT, SIG_DFL);  // whoever runs the tests may ignore it
+      if (std::freopen(errors.c_str(), "w", stderr) == nullptr) _exit(126);
+      execl(DRIFTLESS_PROGRAM, DRIFTLESS_PROGRAM, "run", "-q", study.c_str(), "-o", output.c_str(),
+            static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    // The plan is written when the cells begin.
+    while (!fs::exists(output / "plan.json") && waitpid(child, nullptr, WNOHANG) == 0) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    kill(child, signal);
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(WEXITSTATUS(status), code);
+    std::ifstream file(errors);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_NE(text.find("driftless: interrupted; "), std::string::npos) << text;
+    EXPECT_NE(text.find("the same command goes on: driftless run " + study), std::string::npos);
+    const auto report = call("report " + output.string());
+    EXPECT_EQ(report.code, 2);
+    EXPECT_NE(report.text.find("the study there is not finished: 4 of 4 cells, the first of them "
+                               "mackie-1999, averaged-drift, step 0.01"),
+              std::string::npos)
+        << report.text;
+  }
+}
+
+TEST_F(Program, CellsOfAnotherBuildOrStudyAreNamedNotTaken) {
+  const auto output = folder_ / "output";
+  ASSERT_EQ(call("run -q " + good_study() + " -o " + output.string()).code, 0);
+  const auto changed = call("run " + good_study(5) + " -o " + output.string());
+  EXPECT_NE(changed.text.find("4 finished cells in " + output.string() +
+                              " are not used: they are of another study\n"),
+            std::string::npos)
+      << changed.text;
+  const auto again = call("run " + good_study(5) + " -o " + output.string());
+  EXPECT_EQ(again.text.find("not used"), std::string::npos) << "told once";
+  // What a folder looks like to a program that was built anew: all names of its cells are others.
+  std::ifstream file(output / "plan.json");
+  auto plan = json::parse(file);
+  plan["program"] = "another";
+  for (auto& cell : plan["cells"]) {
+    const std::string name = cell["file"], other = "0" + name;
+    fs::rename(output / "cells" / name, output / "cells" / other);
+    cell["file"] = other;
+  }
+  std::ofstream(output / "plan.json") << plan.dump();
+  const auto rebuilt = call("run " + good_study(5) + " -o " + output.string());
+  EXPECT_NE(rebuilt.text.find("4 finished cells in " + output.string() +
+                              " are not used: they are of another build of the program\n"),
+            std::string::npos)
+      << rebuilt.text;
 }
 
 TEST_F(Program, AKilledRunLosesNothingThatWasFinished) {

@@ -51,6 +51,8 @@ struct Terms {
   }
 };
 
+inline void PrintTo(const Terms& terms, std::ostream* stream) { *stream << terms.name(); }
+
 inline const std::vector<HeatForm>& all_heat_forms() {
   static const std::vector<HeatForm> all = {HeatForm::none, HeatForm::inverse_temperature,
                                             HeatForm::temperature};

@@ -297,23 +297,17 @@ TEST(Estimate, ReplicasOfDifferentLengthAreWeightedByTheirSamples) {
             1.0);
 }
 
-TEST(EstimateEach, SeesOneReplicaOnly) {
-  Random random(8);
-  std::vector<Eigen::MatrixXd> replicas;
-  for (const auto& run : runs_of(random, 3, 500, 5.0)) replicas.emplace_back(run);
-  replicas[1].array() += 3.0;
-  const auto made = estimate_each(replicas, [](const auto& means) { return means[0]; });
-  ASSERT_EQ(made.size(), 3u);
-  EXPECT_EQ(made[1].mean, estimate_mean({replicas[1].col(0)}).mean);
-  EXPECT_GT(agreement_z(made[0], made[1]), 6.0);
-  EXPECT_LT(agreement_z(made[0], made[2]), 6.0);
-}
-
 TEST(AgreementZ, IsFiniteAndCountsBothErrors) {
   EXPECT_DOUBLE_EQ(agreement_z({1.0, 3.0, 1, false}, {11.0, 4.0, 1, false}), 2.0);
   EXPECT_EQ(agreement_z({0.3, 0.0, 1, false}, {0.1 + 0.2, 0.0, 1, false}), 0.0);
   EXPECT_EQ(agreement_z({1.0, 0.0, 1, false}, {2.0, 0.0, 1, false}), 1e6);
   EXPECT_EQ(agreement_z({1.0, infinity, 1, false}, {2.0, 0.0, 1, false}), 0.0);
+}
+
+TEST(StudentQuantile, IsThatOfTheTables) {
+  EXPECT_NEAR(student_quantile(3.0, 0.005), 5.8409, 1e-4);
+  EXPECT_NEAR(student_quantile(infinity, 0.025), interval_quantile, 1e-12);
+  EXPECT_EQ(student_quantile(0.2, 0.05), student_quantile(1.0, 0.05));
 }
 
 TEST(StudentFactor, IsTheRatioOfQuantiles) {

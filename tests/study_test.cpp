@@ -751,14 +751,21 @@ TEST(StudySchema, agrees_with_the_reader) {
 }
 
 json sample_result() {
-  const json observable = {
-      {"mean", 1.1},
-      {"error", 1e-3},
-      {"effective_samples", 300.5},
-      {"exact", 1.1},
-      {"unit", "T"},
-      {"status", "ok"},
-      {"deviation", {{"value", 1e-3}, {"lower", 0}, {"upper", 3e-3}, {"below_noise", true}}}};
+  const json observable = {{"mean", 1.1},
+                           {"error", 1e-3},
+                           {"effective_samples", 300.5},
+                           {"degrees_of_freedom", 21.5},
+                           {"replicas_disagree", true},
+                           {"exact", 1.1},
+                           {"unit", "T"},
+                           {"status", "ok"},
+                           {"deviation",
+                            {{"value", 1e-3},
+                             {"lower", 0},
+                             {"upper", 3e-3},
+                             {"below_noise", true},
+                             {"bound", 4e-3},
+                             {"resolution", 3e-3}}}};
   const json curve = {
       {"x", {0.1, 0.3}}, {"density", {1, 2}}, {"error", {0, 0.1}}, {"exact", {1.1, 1.9}}};
   const Study study = parse_study(good_text, "good.json");
@@ -808,7 +815,10 @@ json sample_result() {
              {"failures",
               {{{"replica", 2}, {"cause", "non-finite number"}, {"step", 7}, {"time", 0.7}}}},
              {"off_equilibrium",
-              {{"agrees", true}, {"largest_z", 1.5}, {"observable", "internal_temperature"}}},
+              {{"agrees", true},
+               {"largest_z", 1.5},
+               {"threshold", 5},
+               {"observable", "internal_temperature"}}},
              {"curves", {{"momentum", curve}}},
              {"energy_trace", {{"time", {0, 1}}, {"energy", {0, -0.1}}}},
              {"cost",
@@ -841,6 +851,9 @@ json sample_result() {
            {{{"scene", "mackie-1999"},
              {"observable", "equilibrium"},
              {"tolerance", 0.01},
+             {"level", 0.95},
+             {"cells_compared", 0},
+             {"resolution", nullptr},
              {"method", nullptr},
              {"time_step", nullptr},
              {"cost", nullptr},
@@ -891,7 +904,10 @@ TEST(ResultSchema, refuses_what_is_no_result) {
       {"/cells/0/cost/core_seconds_per_time", "cheap"},
       {"/cells/0/options/as_published", nullptr},
       {"/orders/0/points", -1},
+      {"/cells/0/observables/kinetic_temperature/deviation/bound", -1},
+      {"/cells/0/observables/kinetic_temperature/degrees_of_freedom", 0.5},
       {"/answers/0/tolerance", 0},
+      {"/answers/0/level", 1},
       {"/answers/0/runner_up", json::object()},
   };
   for (const auto& [pointer, value] : faults) {
@@ -911,8 +927,9 @@ TEST(ResultSchema, wants_every_part_that_is_not_optional) {
       {"/methods/0", {}},
       {"/cells/0", {"off_equilibrium", "curves", "energy_trace"}},
       {"/cells/1", {}},
-      {"/cells/0/observables/kinetic_temperature", {"exact", "deviation"}},
-      {"/cells/0/observables/kinetic_temperature/deviation", {}},
+      {"/cells/0/observables/kinetic_temperature",
+       {"exact", "deviation", "degrees_of_freedom", "replicas_disagree"}},
+      {"/cells/0/observables/kinetic_temperature/deviation", {"bound", "resolution"}},
       {"/cells/0/failures/0", {}},
       {"/cells/0/off_equilibrium", {}},
       {"/cells/0/curves/momentum", {"exact"}},

@@ -89,6 +89,19 @@ inline bool resolves_something(const Ladder& ladder) {
   return std::any_of(coarse.begin(), coarse.end(), resolved);
 }
 
+/// Every moment is right at every step of the ladder, and well known.
+inline Verdict exact_at_every_step(const Ladder& ladder, double largest_error) {
+  for (int n = 0; n < 3; ++n) {
+    for (int m = 0; m < moments; ++m) {
+      const Measured found = ladder.rungs[n].deviations[m];
+      if (std::abs(found.mean) <= z_bound * found.error && found.error <= largest_error) continue;
+      return complain(moment_names[m], " is off by ", found.mean, " +- ", found.error, " at dt/",
+                      1 << n);
+    }
+  }
+  return {};
+}
+
 /// From dt to dt/2 each resolved deviation shrinks by 2^-order, half an order being left to the
 /// next term and z_bound errors to the noise.
 inline Verdict shrinks_at_order(const Ladder& ladder, int order) {

@@ -1,5 +1,6 @@
-// The rule of an answer: which method and step keeps an observable within a tolerance at least cost.
-// No document and no chart here, so that it runs under node as well as in the page.
+// What the cells say, and the answer that the result holds: which method and step is shown to keep an
+// observable within a tolerance at least cost. The choice and its sentence are made by the program
+// alone (experiments/answers.cpp); here they are looked up. No document and no chart.
 
 export const equilibrium_parts = [
   'kinetic_temperature',
@@ -19,10 +20,10 @@ export function method_label(cell) {
   ].join(', ');
 }
 
-// What a cell says of an observable: {state, value, lower, upper, worst, note}. The states are
+// What a cell says of an observable: {state, value, lower, upper, bound, worst, note}. The states are
 // 'failed', 'not_applicable', 'not_resolved', 'no_exact_value', 'below_noise' and 'resolved'; only the
 // last two carry numbers. The worst of several deviations lies between the largest of their lower
-// and the largest of their upper ends.
+// and the largest of their upper ends, and below the largest of their bounds.
 export function judge(cell, observable) {
   if (cell.status === 'not_applicable') return {state: 'not_applicable', note: cell.reason ?? ''};
   if (cell.status !== 'ok') return {state: 'failed', note: cell.status};
@@ -30,10 +31,10 @@ export function judge(cell, observable) {
   const unresolved = parts.find((part) => part.status === 'not_resolved');
   if (unresolved)
     return {state: 'not_resolved', note: unresolved.note ?? '', worst: unresolved.name};
-  const without = parts.find((part) => !part.deviation);
+  const without = parts.find((part) => part.deviation?.bound === undefined);
   if (without) return {state: 'no_exact_value', note: without.note ?? '', worst: without.name};
   const largest = (end) => Math.max(...parts.map((part) => part.deviation[end]));
-  const upper = largest('upper');
+  const bound = largest('bound');
   const value = largest('value');
   return {
     // The value shown is that of one part: it is below noise if that part is.
@@ -42,8 +43,9 @@ export function judge(cell, observable) {
       : 'resolved',
     value,
     lower: largest('lower'),
-    upper,
-    worst: parts.find((part) => part.deviation.upper === upper).name,
+    upper: largest('upper'),
+    bound,
+    worst: parts.find((part) => part.deviation.bound === bound).name,
   };
 }
 
@@ -52,7 +54,7 @@ export function cost_of(cell) {
 }
 
 export function passes(judgement, tolerance) {
-  return judgement.upper !== undefined && judgement.upper <= tolerance;
+  return judgement.bound !== undefined && judgement.bound <= tolerance;
 }
 
 // One entry for each method of the scene, in the file's order: its judged cells and, of those that
@@ -80,12 +82,14 @@ export function ranked(entries) {
     .sort((a, b) => b.consistent - a.consistent || a.best.cost - b.best.cost);
 }
 
-// The cheapest method whose limit is the model, the next of these, and the cheapest method of
-// another limit if that is cheaper than both; each null where there is none.
-export function answer(result, scene, observable, tolerance) {
-  const passing = ranked(methods_of(result, scene, observable, tolerance));
-  const [winner = null, runner_up = null] = passing.filter((entry) => entry.consistent);
-  const other = passing.find((entry) => !entry.consistent);
-  const cheaper = other && (!winner || other.best.cost < winner.best.cost);
-  return {winner, runner_up, cheaper_inconsistent: cheaper ? other : null};
+// The result's answer: {method, time_step, upper, sentence, cells_compared, level, ...}, or undefined.
+export function answer_of(result, scene, observable, tolerance) {
+  return result.answers?.find(
+    (entry) =>
+      entry.scene === scene && entry.observable === observable && entry.tolerance === tolerance,
+  );
+}
+
+export function tolerances_of(result) {
+  return [...new Set((result.answers ?? []).map((entry) => entry.tolerance))].sort((a, b) => a - b);
 }

@@ -57,6 +57,18 @@ export function percent(value, digits = 2) {
   return `${number(value * 100, digits)} %`;
 }
 
+// A bound is rounded up, never below itself.
+export function bound_text(value, observable, digits = 2) {
+  if (!(value > 0)) return deviation(value, observable, digits);
+  const unit = 10 ** (Math.floor(Math.log10(value)) + 1 - digits);
+  return deviation(unit * Math.ceil((value / unit) * (1 - 1e-12)), observable, digits);
+}
+
+// What 95 % intervals reach to either side of a value with this standard error.
+export function interval_reach(error) {
+  return 1.96 * (error ?? 0);
+}
+
 export function deviation(value, observable, digits = 2) {
   return is_relative(observable) ? percent(value, digits) : number(value, digits);
 }

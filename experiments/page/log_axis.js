@@ -24,7 +24,9 @@ export function log_ticks([from, to]) {
 // or an interval that almost reaches zero, must not stretch the axis towards zero.
 export function error_domain(rows, also = []) {
   const firm = rows.flatMap((row) =>
-    row.below_noise ? [row.upper] : [row.value, row.upper, Math.max(row.lower, row.value / 4)],
+    row.below_noise
+      ? [row.upper, row.bound]
+      : [row.value, row.upper, row.bound, Math.max(row.lower, row.value / 4)],
   );
   const [low, high] = log_domain([...firm, ...also], 1);
   return [low / (rows.some((row) => row.below_noise) ? 2.5 : 1.4), high * 1.5];

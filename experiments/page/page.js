@@ -1,5 +1,5 @@
 // The page: reads the result, keeps the choosers' state and draws every part from it.
-import {answer, method_label} from './answer.js';
+import {answer_of, method_label, tolerances_of} from './answer.js';
 import {all_drawn} from './chart.js';
 import {fill_select, replace} from './dom.js';
 import {cost_unit, is_relative, number, observable_title, percent} from './format.js';
@@ -11,7 +11,6 @@ import {render_provenance, render_scenes} from './sections/provenance.js';
 import {render_agreement, render_failures} from './sections/trust.js';
 
 const result = JSON.parse(document.getElementById('result').textContent);
-const tolerances = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1];
 const usual_order = [
   'equilibrium',
   'kinetic_temperature',
@@ -20,11 +19,12 @@ const usual_order = [
 ];
 
 const labels = method_labels(result);
+const tolerances = tolerances_of(result);
 const shared = {result, labels, unit: cost_unit(result)};
 const state = {
   scene: result.scenes[0]?.name,
   observable: 'equilibrium',
-  tolerance: 0.05,
+  tolerance: tolerances.includes(0.05) ? 0.05 : tolerances[0],
   trace_step: null,
   law_method: null,
   law_step: null,
@@ -40,8 +40,11 @@ function observables() {
 }
 
 function context() {
-  const {winner} = answer(result, state.scene, state.observable, state.tolerance);
-  return {...shared, ...state, winner};
+  const answer = answer_of(result, state.scene, state.observable, state.tolerance);
+  const winner = answer?.method
+    ? {label: answer.method, time_step: answer.time_step, cost: answer.cost}
+    : null;
+  return {...shared, ...state, answer, winner};
 }
 
 const curves_of = (cells) =>
@@ -54,7 +57,7 @@ function kept(choice, offered, likely) {
 
 function set_detail_choosers(now) {
   const cells = scene_cells(result, state.scene);
-  const best_step = now.winner?.best.cell.time_step;
+  const best_step = now.winner?.time_step;
   const steps = time_steps(cells.filter((cell) => cell.energy_trace?.time?.length));
   state.trace_step = kept(state.trace_step, steps, best_step);
   fill_select(

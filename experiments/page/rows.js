@@ -1,6 +1,14 @@
 // From cells to the flat rows that charts draw.
 import {cost_of, judge, method_label} from './answer.js';
-import {deviation, number, observable_short, status_title, with_error} from './format.js';
+import {
+  bound_text,
+  deviation,
+  interval_reach,
+  number,
+  observable_short,
+  status_title,
+  with_error,
+} from './format.js';
 
 export function scene_cells(result, scene) {
   return result.cells.filter((cell) => cell.scene === scene);
@@ -35,9 +43,11 @@ export function error_rows(cells, observable, unit) {
       value: judgement.value,
       lower: judgement.lower,
       upper: judgement.upper,
+      bound: judgement.bound,
       below_noise: judgement.state === 'below_noise',
       error_text: deviation(judgement.value, observable),
       interval_text: `${deviation(judgement.lower, observable)} … ${deviation(judgement.upper, observable)}`,
+      bound_text: bound_text(judgement.bound, observable),
       worst_text: observable_short(judgement.worst),
       mean_text: mean_text(cell.observables[judgement.worst]),
     }));
@@ -50,7 +60,7 @@ export function size_rows(cells, observable, unit) {
     .map((cell) => {
       const {mean, error} = cell.observables[observable];
       const value = Math.abs(mean);
-      const half = 1.96 * (error ?? 0);
+      const half = interval_reach(error);
       const below_noise = value - half <= 0;
       return {
         ...shared_fields(cell, unit),

@@ -1,5 +1,6 @@
-// Opens result pages in headless Chromium, without a network, and looks for faults. WRITE_PAGE names the program that writes
-// the page of a result; CHROMIUM the browser, where it is not found by its usual name.
+// Opens result pages in headless Chromium, without a network, and looks for faults. DRIFTLESS names the
+// program, WRITE_PAGE the one that writes the page of a result as it is; CHROMIUM the browser, where
+// it is not found by its usual name.
 import {execFileSync} from 'node:child_process';
 import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
@@ -8,10 +9,20 @@ import {after, before} from 'node:test';
 import {pathToFileURL} from 'node:url';
 import {chromium} from 'playwright-core';
 
-export const sample = JSON.parse(
-  readFileSync(new URL('sample_result.json', import.meta.url), 'utf8'),
-);
 const folder = mkdtempSync(join(tmpdir(), 'driftless-page-'));
+let written = 0;
+
+// A result with all that the program derives from its cells: deviations, orders and answers.
+export function answered(result) {
+  const name = join(folder, `${++written}`);
+  writeFileSync(`${name}.json`, JSON.stringify(result));
+  execFileSync(process.env.DRIFTLESS, ['report', `${name}.json`, '-o', name], {stdio: 'ignore'});
+  return JSON.parse(readFileSync(join(name, 'result.json'), 'utf8'));
+}
+
+export const sample = answered(
+  JSON.parse(readFileSync(new URL('sample_result.json', import.meta.url), 'utf8')),
+);
 const flags = [
   '--no-sandbox',
   '--disable-gpu',
@@ -34,7 +45,6 @@ after(async () => {
   rmSync(folder, {recursive: true, force: true});
 });
 
-let written = 0;
 export function page_of(result, change = (html) => html) {
   const name = join(folder, `${++written}`);
   writeFileSync(`${name}.json`, JSON.stringify(result));
@@ -101,7 +111,7 @@ export const cells_of = (result, scene = result.scenes[0].name) =>
 const parts_of = (cell) => equilibrium.map((name) => cell.observables[name]);
 const measured = (cell) =>
   cell.status === 'ok' && parts_of(cell).every((part) => part.status === 'ok' && part.deviation);
-const upper_of = (cell) => Math.max(...parts_of(cell).map((part) => part.deviation.upper));
+const bound_of = (cell) => Math.max(...parts_of(cell).map((part) => part.deviation.bound));
 const failed = (cell) => !['ok', 'not_applicable'].includes(cell.status);
 
 export function expected_marks(result) {
@@ -115,12 +125,13 @@ export function expected_marks(result) {
   const drifting = cells.filter(
     (cell) => cell.status === 'ok' && cell.observables.energy_drift.deviation.upper > 1e-8,
   ).length;
-  const passing = shown.filter((cell) => upper_of(cell) <= 0.05).length;
+  const passing = shown.filter((cell) => bound_of(cell) <= 0.05).length;
   const methods = new Set(shown.map((cell) => cell.method)).size;
   return {
     'chart-cost': {
       points: shown.length,
       intervals: shown.length,
+      bounds: shown.length,
       grounds: hollow,
       lines: methods,
       tolerance: 1,
@@ -179,7 +190,7 @@ export async function inspect(url, result, patience) {
 export function shown_answer(page) {
   return page.evaluate(() => {
     const all = [...document.querySelectorAll('#answer-table tr[data-method]')];
-    const rows = all.filter((row) => row.dataset.consistent !== 'false');
+    const rows = all.filter((row) => row.hasAttribute('data-consistent'));
     const entry = (row) =>
       row
         ? {method: row.querySelector('.method').textContent, time_step: Number(row.dataset.step)}

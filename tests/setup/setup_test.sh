@@ -37,7 +37,10 @@ case "$1" in
     case "$3" in release) : >build/build.ninja ;; *) : >"build-$3/build.ninja" ;; esac
     ;;
   --build)
-    if [[ -n ${BUILD_FAILS:-} ]]; then echo "[1/1] the compiler's complaint" && exit 1; fi
+    echo "[0/2] Re-checking globbed directories..."
+    echo "[1/2] cd build && cmake -P build_info.cmake"
+    if [[ -n ${BUILD_STEP:-} ]]; then echo "[2/2] $BUILD_STEP CXX something"; fi
+    if [[ -n ${BUILD_FAILS:-} ]]; then echo "[2/2] the compiler's complaint" && exit 1; fi
     cp "$SANDBOX/program" "$2/driftless" ;;
 esac
 BODY
@@ -198,6 +201,16 @@ case_failing_npm_leaves_what_worked() {
   exits 1 && tells 'npm could not install them' && calls_no ctest || return 1
   call "$tree/run.sh"
   exits 0 && calls_no npm
+}
+
+case_compiling_or_linking_is_said_once() {
+  local step
+  for step in Building Linking; do
+    call BUILD_STEP="$step" "$tree/run.sh" methods
+    exits 0 && tells 'building (log: build/build.log)' || return 1
+    call BUILD_STEP="$step" "$tree/run.sh" methods
+    exits 0 && tells_lines 1 || return 1
+  done
 }
 
 case_failing_build_shows_its_end_and_runs_nothing() {

@@ -1,4 +1,5 @@
 // A measured density over its exact curve, and below it the difference with its error.
+import {interval_reach} from '../format.js';
 
 const measured = '#0072b2';
 const law = '#1f2933';
@@ -6,7 +7,7 @@ const law = '#1f2933';
 function rows_of(curve) {
   return curve.x.map((x, index) => {
     const density = curve.density[index];
-    const half = 1.96 * (curve.error?.[index] ?? 0);
+    const half = interval_reach(curve.error?.[index]);
     const exact = curve.exact?.[index] ?? null;
     const difference = exact === null ? null : density - exact;
     return {
@@ -23,24 +24,6 @@ function rows_of(curve) {
   });
 }
 
-function panel(rows, height, layer) {
-  return {
-    width: 'container',
-    height,
-    autosize: {type: 'fit-x', contains: 'padding'},
-    data: {values: rows},
-    layer,
-  };
-}
-
-const tips = [
-  {field: 'x', format: '.4~g'},
-  {field: 'density', title: 'measured', format: '.4~g'},
-  {field: 'exact', title: 'exact', format: '.4~g'},
-  {field: 'half', title: '95 % half width', format: '.2~g'},
-];
-const axis_y = {minExtent: 52, maxExtent: 52, tickCount: 5};
-
 // A few bins with next to no samples (g(r) near 0) must not set the scale; their bars leave the frame.
 function firm(rows) {
   const halves = rows.map((row) => row.half).sort((a, b) => a - b);
@@ -54,28 +37,57 @@ function domain_of(rows, lows, highs) {
   return [low < 0 ? low - space : low, high + space];
 }
 
+const encoding_x = (title) => ({
+  field: 'x',
+  type: 'quantitative',
+  title,
+  scale: {zero: false, nice: false, padding: 6},
+});
+
+const encoding_y = (field, title, domain, tickCount) => ({
+  field,
+  type: 'quantitative',
+  title,
+  axis: {minExtent: 52, maxExtent: 52, tickCount},
+  scale: {domain},
+});
+
+const tips = [
+  {field: 'x', format: '.4~g'},
+  {field: 'density', title: 'measured', format: '.4~g'},
+  {field: 'exact', title: 'exact', format: '.4~g'},
+  {field: 'half', title: '95 % half width', format: '.2~g'},
+];
+
+// The measured points with their intervals, over what lies beneath them.
+function panel(rows, height, beneath, x, y, [low, high], stroke) {
+  return {
+    width: 'container',
+    height,
+    autosize: {type: 'fit-x', contains: 'padding'},
+    data: {values: rows},
+    layer: [
+      ...beneath,
+      {
+        name: 'intervals',
+        mark: {type: 'rule', clip: true, strokeWidth: 1.6},
+        encoding: {x, y: {...y, field: low}, y2: {field: high}, stroke},
+      },
+      {
+        name: 'points',
+        mark: {type: 'point', clip: true, filled: true, size: 34, fill: measured, opacity: 1},
+        encoding: {x, y, tooltip: tips},
+      },
+    ],
+  };
+}
+
 export function distribution({curve, title, y_title}) {
   if (!curve?.x?.length) return null;
   const rows = rows_of(curve);
-  const x = {
-    field: 'x',
-    type: 'quantitative',
-    title,
-    scale: {zero: false, nice: false, padding: 6},
-  };
-  const y = {
-    field: 'density',
-    type: 'quantitative',
-    title: y_title,
-    axis: axis_y,
-    scale: {
-      domain: domain_of(
-        rows.map((row) => ({...row, low: 0})),
-        'low',
-        'high',
-      ),
-    },
-  };
+  const from_zero = rows.map((row) => ({...row, low: 0}));
+  const x = encoding_x(title);
+  const y = encoding_y('density', y_title, domain_of(from_zero, 'low', 'high'), 5);
   const has_law = rows.some((row) => row.exact !== null);
   const domain = has_law ? ['measured', 'exact law'] : ['measured'];
   const kind = (name) => ({
@@ -84,62 +96,24 @@ export function distribution({curve, title, y_title}) {
     scale: {domain, range: [measured, law]},
     legend: {title: null, orient: 'top', symbolType: 'stroke', symbolStrokeWidth: 3},
   });
-  const exact = has_law
-    ? [
-        {
-          name: 'exact',
-          mark: {type: 'line', strokeWidth: 1.6, interpolate: 'cardinal', tooltip: null},
-          encoding: {x, y: {...y, field: 'exact'}, stroke: kind('exact law')},
-        },
-      ]
-    : [];
-  return panel(rows, 240, [
-    ...exact,
-    {
-      name: 'intervals',
-      mark: {type: 'rule', clip: true, strokeWidth: 1.6},
-      encoding: {x, y: {...y, field: 'low'}, y2: {field: 'high'}, stroke: kind('measured')},
-    },
-    {
-      name: 'points',
-      mark: {type: 'point', clip: true, filled: true, size: 34, fill: measured, opacity: 1},
-      encoding: {x, y, tooltip: tips},
-    },
-  ]);
+  const exact = {
+    name: 'exact',
+    mark: {type: 'line', strokeWidth: 1.6, interpolate: 'cardinal', tooltip: null},
+    encoding: {x, y: {...y, field: 'exact'}, stroke: kind('exact law')},
+  };
+  return panel(rows, 240, has_law ? [exact] : [], x, y, ['low', 'high'], kind('measured'));
 }
 
 export function difference({curve, title}) {
   const rows = curve?.x?.length ? rows_of(curve).filter((row) => row.exact !== null) : [];
   if (!rows.length) return null;
-  const x = {
-    field: 'x',
-    type: 'quantitative',
-    title,
-    scale: {zero: false, nice: false, padding: 6},
+  const ends = ['difference_low', 'difference_high'];
+  const y = encoding_y('difference', 'measured − exact', domain_of(rows, ...ends), 4);
+  const zero = {
+    name: 'zero',
+    data: {values: [{difference: 0}]},
+    mark: {type: 'rule', stroke: law, strokeWidth: 1.4, tooltip: null},
+    encoding: {y},
   };
-  const y = {
-    field: 'difference',
-    type: 'quantitative',
-    title: 'measured − exact',
-    axis: {...axis_y, tickCount: 4},
-    scale: {domain: domain_of(rows, 'difference_low', 'difference_high')},
-  };
-  return panel(rows, 120, [
-    {
-      name: 'zero',
-      data: {values: [{difference: 0}]},
-      mark: {type: 'rule', stroke: law, strokeWidth: 1.4, tooltip: null},
-      encoding: {y},
-    },
-    {
-      name: 'intervals',
-      mark: {type: 'rule', clip: true, stroke: measured, strokeWidth: 1.6},
-      encoding: {x, y: {...y, field: 'difference_low'}, y2: {field: 'difference_high'}},
-    },
-    {
-      name: 'points',
-      mark: {type: 'point', clip: true, filled: true, size: 34, fill: measured, opacity: 1},
-      encoding: {x, y, tooltip: tips},
-    },
-  ]);
+  return panel(rows, 120, [zero], encoding_x(title), y, ends, {value: measured});
 }

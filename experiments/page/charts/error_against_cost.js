@@ -8,12 +8,12 @@ export function error_against_cost({result, scene, observable, tolerance, unit, 
     rows: error_rows(cells, observable, unit),
     failures: failure_rows(cells, unit),
     labels,
-    x: {field: 'cost', title: `cost, ${unit.name} per unit of simulated time`, label_side: 'right'},
+    x: {field: 'cost', title: `cost, ${unit.name} per unit time`, label_side: 'right'},
     y: error_axis(observable),
     tolerance: tolerance_line(observable, tolerance),
     legend: {methods: true, orient: 'right', title: 'method'},
     is_answer: winner
-      ? (row) => row.method === winner.label && row.time_step === winner.best.cell.time_step
+      ? (row) => row.method === winner.label && row.time_step === winner.time_step
       : null,
   });
 }

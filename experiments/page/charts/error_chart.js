@@ -29,6 +29,7 @@ function clamped(row, floor, scale) {
     value: Math.max(row.value * scale, floor),
     lower: Math.max(row.lower * scale, floor),
     upper: row.upper * scale,
+    bound: (row.bound ?? row.upper) * scale,
   };
 }
 

@@ -9,6 +9,7 @@ const tooltips = (size_title) => [
   {field: 'cost_text', title: 'cost per unit time'},
   {field: 'error_text', title: size_title},
   {field: 'interval_text', title: '95 % interval'},
+  {field: 'bound_text', title: 'at most (for an answer)'},
   {field: 'worst_text', title: 'observable'},
   {field: 'mean_text', title: 'measured'},
 ];
@@ -55,6 +56,12 @@ export function layers_of_points(x, y, {stroke, fill, shape}, size_title, pickab
       name: 'intervals',
       mark: {type: 'rule', strokeWidth: 1.6},
       encoding: {x, y: {...y, field: 'lower'}, y2: {field: 'upper'}, stroke, opacity},
+    },
+    {
+      // Up to the bound that answers need; in a chart without one it ends where the interval does.
+      name: 'bounds',
+      mark: {type: 'rule', strokeWidth: 0.7},
+      encoding: {x, y: {...y, field: 'upper'}, y2: {field: 'bound'}, stroke, opacity},
     },
     {
       name: 'grounds',

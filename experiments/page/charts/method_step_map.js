@@ -1,6 +1,6 @@
 // Method against step: the worst-case error as a colour, and a word where there is no number.
 import {judge, method_label, passes} from '../answer.js';
-import {deviation, number, observable_short, status_title} from '../format.js';
+import {bound_text, deviation, number, observable_short, status_title} from '../format.js';
 import {time_steps} from '../rows.js';
 
 const words = {
@@ -12,7 +12,7 @@ const words = {
 function text_of(cell, judgement, observable) {
   if (judgement.state === 'failed')
     return cell.status === 'negative_internal_energy' ? 'u < 0' : status_title(cell.status);
-  if (judgement.state === 'below_noise') return `< ${deviation(judgement.upper, observable)}`;
+  if (judgement.state === 'below_noise') return `< ${bound_text(judgement.bound, observable)}`;
   return words[judgement.state] ?? deviation(judgement.value, observable);
 }
 
@@ -23,10 +23,10 @@ function rows_of(cells, observable, tolerance) {
       method: method_label(cell),
       step: number(cell.time_step),
       state: judgement.state,
-      upper: judgement.upper ?? null,
+      bound: judgement.bound ?? null,
       text: text_of(cell, judgement, observable),
       passes: passes(judgement, tolerance),
-      upper_text: judgement.upper === undefined ? '–' : deviation(judgement.upper, observable),
+      bound_text: judgement.bound === undefined ? '–' : bound_text(judgement.bound, observable),
       note: judgement.worst
         ? `${observable_short(judgement.worst)} ${judgement.note ?? ''}`
         : (judgement.note ?? '').replaceAll('_', ' '),
@@ -52,16 +52,16 @@ export function method_step_map({cells, observable, tolerance, labels}) {
   const present = labels.filter((label) => cells.some((cell) => method_label(cell) === label));
   const steps = time_steps(cells);
   const rows = rows_of(cells, observable, tolerance);
-  const uppers = rows.map((row) => row.upper).filter((upper) => upper > 0);
-  const domain = uppers.length
-    ? [Math.min(...uppers), Math.max(Math.max(...uppers), Math.min(...uppers) * 1.01)]
+  const bounds = rows.map((row) => row.bound).filter((bound) => bound > 0);
+  const domain = bounds.length
+    ? [Math.min(...bounds), Math.max(Math.max(...bounds), Math.min(...bounds) * 1.01)]
     : [0.01, 0.1];
   const dark = Math.sqrt(domain[0] * domain[1]) * 1.6;
   const tips = [
     {field: 'method', title: 'method'},
     {field: 'step', title: 'time step'},
     {field: 'text', title: 'error'},
-    {field: 'upper_text', title: 'at worst'},
+    {field: 'bound_text', title: 'at most'},
     {field: 'note', title: 'note'},
   ];
   const shared = encodings(present, steps);
@@ -74,19 +74,19 @@ export function method_step_map({cells, observable, tolerance, labels}) {
     layer: [
       {
         name: 'failed_squares',
-        transform: [{filter: '!isValid(datum.upper)'}],
+        transform: [{filter: '!isValid(datum.bound)'}],
         mark: {type: 'rect', fill: '#edeff2', stroke: 'white', strokeWidth: 2},
         encoding: {...shared, tooltip: tips},
       },
       {
         name: 'squares',
-        transform: [{filter: 'isValid(datum.upper)'}],
+        transform: [{filter: 'isValid(datum.bound)'}],
         mark: {type: 'rect', stroke: 'white', strokeWidth: 2},
         encoding: {
           ...shared,
           tooltip: tips,
           fill: {
-            field: 'upper',
+            field: 'bound',
             type: 'quantitative',
             scale: {type: 'log', domain, scheme: 'blues', nice: false},
             legend: null,
@@ -107,8 +107,8 @@ export function method_step_map({cells, observable, tolerance, labels}) {
           text: {field: 'text'},
           color: {
             condition: [
-              {test: '!isValid(datum.upper)', value: '#616e7c'},
-              {test: `datum.upper > ${dark}`, value: 'white'},
+              {test: '!isValid(datum.bound)', value: '#616e7c'},
+              {test: `datum.bound > ${dark}`, value: 'white'},
             ],
             value: '#1f2933',
           },

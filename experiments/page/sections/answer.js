@@ -1,46 +1,19 @@
 // The answer in a sentence, and the table of every method's cheapest step that passes.
-import {answer, methods_of, ranked} from '../answer.js';
+import {answer_of, methods_of, ranked} from '../answer.js';
 import {element, replace, table} from '../dom.js';
-import {deviation, number, observable_short, percent, status_title, with_error} from '../format.js';
+import {
+  bound_text,
+  deviation,
+  number,
+  observable_short,
+  percent,
+  status_title,
+  with_error,
+} from '../format.js';
 import {method_tag} from '../palette.js';
 
-function published(result, scene, observable, tolerance) {
-  return result.answers?.find(
-    (entry) =>
-      entry.scene === scene &&
-      entry.observable === observable &&
-      Math.abs(entry.tolerance - tolerance) <= 1e-9 * tolerance,
-  )?.sentence;
-}
-
-// For tolerances that the result has no sentence for: the same words.
-function composed({result, observable, tolerance}, scene) {
-  const {winner, runner_up, cheaper_inconsistent} = answer(result, scene, observable, tolerance);
-  const what =
-    observable === 'equilibrium'
-      ? 'temperatures and the variance of the internal energy'
-      : `the ${observable.replaceAll('_', ' ')}`;
-  const aim = `For ${scene}, to have ${what} within ${percent(tolerance)}`;
-  const at = ({label, best}) => `${label} at step ${number(best.cell.time_step)}`;
-  const parts = ['no method and step of this study is shown to be'];
-  if (winner)
-    parts[0] = `${at(winner)}, ${number(winner.best.cost)} core-seconds per unit time, wrong by at most ${percent(winner.best.judgement.upper)}`;
-  if (runner_up)
-    parts.push(
-      `next ${at(runner_up)}, ${number(runner_up.best.cost / winner.best.cost, 2)} times the cost`,
-    );
-  if (cheaper_inconsistent)
-    parts.push(
-      `${at(cheaper_inconsistent)} passes for ${number(cheaper_inconsistent.best.cost)}, but its limit is not the model`,
-    );
-  return `${aim}: ${parts.join('; ')}.`;
-}
-
-function sentence(context, scene) {
-  return (
-    published(context.result, scene, context.observable, context.tolerance) ??
-    composed(context, scene)
-  );
+function sentence({result, observable, tolerance}, scene) {
+  return answer_of(result, scene, observable, tolerance)?.sentence ?? '';
 }
 
 // Why no step of a method passes, from its judged cells.
@@ -48,17 +21,17 @@ function reason(entry, observable, tolerance) {
   const with_state = (...states) =>
     entry.judged.filter(({judgement}) => states.includes(judgement.state));
   const numbers = with_state('resolved', 'below_noise').sort(
-    (a, b) => a.judgement.upper - b.judgement.upper,
+    (a, b) => a.judgement.bound - b.judgement.bound,
   );
   const failed = with_state('failed');
   if (with_state('not_applicable').length === entry.judged.length)
     return `not applicable: ${entry.judged[0].judgement.note}`;
   if (failed.length === entry.judged.length) return `failed at every step: ${causes(failed)}`;
   if (!numbers.length) return without_numbers(entry, with_state);
-  if (numbers.some(({judgement}) => judgement.upper <= tolerance))
+  if (numbers.some(({judgement}) => judgement.bound <= tolerance))
     return 'passes, but its cost is not known';
   const {cell, judgement} = numbers[0];
-  const at = `${told_apart(judgement.upper, tolerance, observable)} at step ${number(cell.time_step)}`;
+  const at = `${told_apart(judgement.bound, tolerance, observable)} at step ${number(cell.time_step)}`;
   if (judgement.state === 'below_noise')
     return `below noise, but not resolved to ${deviation(tolerance, observable)}: could be up to ${at}`;
   if (judgement.lower > tolerance)
@@ -68,7 +41,7 @@ function reason(entry, observable, tolerance) {
 
 // With as many digits as show that the value is not the tolerance.
 function told_apart(value, tolerance, observable) {
-  const texts = [2, 3, 4, 5].map((digits) => deviation(value, observable, digits));
+  const texts = [2, 3, 4, 5].map((digits) => bound_text(value, observable, digits));
   return texts.find((text) => text !== deviation(tolerance, observable, 5)) ?? texts[3];
 }
 
@@ -85,8 +58,8 @@ function causes(failed) {
   return kinds.join(', ');
 }
 
-function row_of(entry, context, winner) {
-  const {observable, tolerance, unit, labels} = context;
+function row_of(entry, context) {
+  const {observable, tolerance, unit, labels, winner} = context;
   const name = method_tag(entry.label, labels);
   if (!entry.best) {
     return {
@@ -96,7 +69,7 @@ function row_of(entry, context, winner) {
   }
   const {cell, judgement, cost} = entry.best;
   const drift = cell.observables.energy_drift;
-  const is_winner = entry === winner;
+  const is_winner = entry.label === winner?.label;
   return {
     attributes: {
       class: is_winner ? 'best' : null,
@@ -109,11 +82,11 @@ function row_of(entry, context, winner) {
       element('span', {}, name, badge(entry, is_winner)),
       numeric(number(cell.time_step)),
       numeric(number(cost * unit.factor)),
-      numeric(winner ? `${number(cost / winner.best.cost, 2)}×` : '–'),
+      numeric(winner ? `${number(cost / winner.cost, 2)}×` : '–'),
       numeric(
         judgement.state === 'below_noise' ? 'below noise' : deviation(judgement.value, observable),
       ),
-      numeric(deviation(judgement.upper, observable)),
+      numeric(bound_text(judgement.bound, observable)),
       numeric(drift ? with_error(drift.mean, drift.error) : '–'),
     ],
   };
@@ -128,7 +101,7 @@ function badge(entry, is_winner) {
 const numeric = (text) => ({text, class: 'number'});
 
 export function render_answer(context) {
-  const {result, scene, observable, tolerance, unit} = context;
+  const {result, scene, observable, tolerance, unit, answer} = context;
   const others = result.scenes.map((entry) => entry.name).filter((name) => name !== scene);
   replace('answer-sentence', sentence(context, scene));
   replace(
@@ -143,7 +116,6 @@ export function render_answer(context) {
   );
   const entries = methods_of(result, scene, observable, tolerance);
   const passing = ranked(entries);
-  const winner = passing.find((entry) => entry.consistent) ?? null;
   const rest = entries.filter((entry) => !entry.best);
   const head = [
     'method',
@@ -151,17 +123,23 @@ export function render_answer(context) {
     `cost, ${unit.name} per unit time`,
     'relative cost',
     'error',
-    'at worst (95 %)',
+    'at most',
     'energy drift, kT per particle and unit time',
   ];
-  const caption = `${scene}: ${passing.length || 'none'} of ${entries.length} methods ${passing.length > 1 ? 'keep' : 'keeps'} ${observable_short(observable)} within ${deviation(tolerance, observable)}`;
+  const caption = `${scene}: ${passing.length || 'none'} of ${entries.length} methods ${passing.length > 1 ? 'are' : 'is'} shown to keep ${observable_short(observable)} within ${deviation(tolerance, observable)}`;
+  replace(
+    'answer-level',
+    answer?.cells_compared
+      ? `A step passes where the bound of its error (“at most”) is within the tolerance. The bounds of all ${answer.cells_compared} cells of this scene that were compared hold at once with a probability of ${percent(answer.level)}: so does the answer's, though it is chosen among many. `
+      : '',
+  );
   replace(
     'answer-table-place',
     table(
       'answer-table',
       caption,
       head,
-      [...passing, ...rest].map((entry) => row_of(entry, context, winner)),
+      [...passing, ...rest].map((entry) => row_of(entry, context)),
     ),
   );
 }

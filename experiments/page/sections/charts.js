@@ -15,7 +15,7 @@ import {method_step_map} from '../charts/method_step_map.js';
 import {replace} from '../dom.js';
 import {number, observable_short} from '../format.js';
 import {method_tag} from '../palette.js';
-import {scene_cells} from '../rows.js';
+import {failure_rows, scene_cells} from '../rows.js';
 
 export function draw_errors(now) {
   const what = `${observable_short(now.observable)}, ${now.scene}`;
@@ -42,6 +42,12 @@ export function draw_errors(now) {
     const steps = uncosted.filter((row) => row.method === method).map((row) => row.step_text);
     return `${method} at step ${steps.join(', ')}`;
   });
+  replace(
+    'failed-note',
+    failure_rows(scene_cells(now.result, now.scene), now.unit).length
+      ? ' Crosses in the band along the top are cells that failed (u < 0: an internal energy fell below zero).'
+      : '',
+  );
   replace(
     'cost-note',
     without.length

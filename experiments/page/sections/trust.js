@@ -29,8 +29,10 @@ export function render_agreement({result, scene, labels}) {
         agreement(cells.find((cell) => method_label(cell) === label && cell.time_step === step)),
       ),
     ]);
-  const caption =
-    'The replica that starts off equilibrium against the others: its largest deviation in standard errors, z';
+  const threshold = cells.find((cell) => cell.off_equilibrium)?.off_equilibrium.threshold;
+  const caption = `The replica that starts off equilibrium against the others: its largest deviation in standard errors, z${
+    threshold ? `; beyond ${number(threshold)} it differs` : ''
+  }`;
   replace(
     'agreement-place',
     table(

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "integrators/flows.hpp"
+
+namespace driftless {
+
+/// Friction and conduction of all pairs at once from the state as it stands, kinetic energy put
+/// back at the midpoint velocities:
+///   f = -(zeta + induced) v dt + Gamma dt^{1/2} W,  v_i' = v_i + sum_j f_ij e/m
+///   u_i' = u_i - sum_j (1/2) f_ij (v + v')/2 + q
+/// As sum_i m (v_i'^2 - v_i^2)/2 = sum_pairs f_ij (v + v')/2, kinetic plus internal energy is kept
+/// to rounding.
+class MidpointWork {
+ public:
+  void step(System& system, double dt) {
+    const Fluid& fluid = system.fluid();
+    const auto momentum = [&](const auto& pair) {
+      return fluid.has_friction() ? euler_friction(fluid, pair, dt).momentum : decltype(pair.v)(0);
+    };
+    system.accumulate([&](const auto& pair) { return Transfer{momentum(pair)}; }, exchange_);
+    trial_ = system.motion();
+    for (std::size_t i = 0; i < system.size(); ++i) {
+      trial_.velocity[i] += exchange_.momentum[i] / fluid.mass();
+    }
+    system.accumulate(
+        trial_,
+        [&](const auto& start, const auto& end) {
+          auto total = midpoint_work(momentum(start), start, end);
+          if (fluid.has_conduction()) total += euler_conduction(fluid, start, dt);
+          return total;
+        },
+        exchange_);
+    for (std::size_t i = 0; i < system.size(); ++i) {
+      trial_.internal_energy[i] += exchange_.energy[i];
+    }
+    system.set_motion(trial_);
+  }
+
+ private:
+  template <class V>
+  static Transfer<V> midpoint_work(const V& f, const Pair<V>& start, const TrialPair<V>& end) {
+    const V work = 0.25 * f * (start.v + end.v);
+    return {V(0), -work, -work};
+  }
+
+  Motion trial_;
+  Exchange exchange_;
+};
+
+}  // namespace driftless

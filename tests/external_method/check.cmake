@@ -1,0 +1,63 @@
+# Does what somebody with a method of their own does: installs Driftless, compiles the method against
+# it, lists it, runs a study of it, and holds it to the suites. Then the same once more, compiled for
+# the processor at hand, and so perhaps for other instructions than the library.
+#
+# cmake -DBUILD=... -DSCRATCH=... -DCOMPILER=... -DINVARIANTS=... -P check.cmake
+set(example ${CMAKE_CURRENT_LIST_DIR})
+set(prefix ${SCRATCH}/installed)
+set(program ${prefix}/bin/driftless)
+set(warnings "-Wall -Wextra -Wpedantic -Wshadow -Werror")
+file(REMOVE_RECURSE ${SCRATCH})
+
+# call(COMMAND...): stops the test if it fails; what it printed is left in `output`.
+function(call)
+  list(JOIN ARGV " " words)
+  message(STATUS "${words}")
+  execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output
+    ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "it ended with ${result}:\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+function(expect text pattern)
+  if(NOT text MATCHES "${pattern}")
+    message(FATAL_ERROR "'${pattern}' is not in:\n${text}")
+  endif()
+endfunction()
+
+# compile(FOLDER FLAGS): leaves the compiled example in `module`.
+function(compile folder flags)
+  call(${CMAKE_COMMAND} -S ${example} -B ${folder} -DCMAKE_PREFIX_PATH=${prefix}
+    -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${warnings} ${flags}")
+  call(${CMAKE_COMMAND} --build ${folder})
+  set(module ${folder}/my_euler.so PARENT_SCOPE)
+endfunction()
+
+# check_suites(MODULE): holds the method to what every method is held to.
+function(check_suites module)
+  call(${CMAKE_COMMAND} -E env DRIFTLESS_METHODS=${module} ${INVARIANTS}
+    --gtest_filter=*/example_euler)
+  expect("${output}" "PASSED  . [1-9]")
+endfunction()
+
+call(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
+compile(${SCRATCH}/build "")
+
+call(${program} --methods ${module} methods)
+expect("${output}" "\nexample-euler\n")
+
+call(${program} --methods ${module} run ${example}/study.json -q -o ${SCRATCH}/result)
+file(READ ${SCRATCH}/result/result.json result)
+string(JSON method GET "${result}" cells 0 method)
+string(JSON status GET "${result}" cells 0 status)
+string(JSON command GET "${result}" provenance command)
+string(JSON instructions GET "${result}" provenance instructions)
+expect("${method} ${status}" "^example-euler ok$")
+expect("${command}" "--methods ${module}")
+expect("${instructions}" "^[A-Z]")
+
+check_suites(${module})
+compile(${SCRATCH}/build-native -march=native)
+check_suites(${module})

@@ -1,0 +1,218 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "tests/method_names.hpp"
+#include "tests/small_system.hpp"
+
+// Threads, lanes and the places of particles in memory are nobody's business: every method takes
+// the same path, to the last bit where nothing but the way of working differs. The system has
+// several tiles of cells along each axis.
+namespace driftless::testing {
+namespace {
+
+constexpr double time_step = 0.01;
+constexpr std::uint64_t steps = 6;
+
+Box wide_box() { return {Vector(8.3, 6.4, 4.7)}; }
+
+State wide_state(const FluidParameters& fluid) {
+  Uniform uniform(11);
+  State state;
+  const auto particles = static_cast<std::uint32_t>(3 * wide_box().volume());
+  for (std::uint32_t i = 0; i < particles; ++i) {
+    state.position.push_back(uniform.vector(0, 1).cwiseProduct(wide_box().lengths));
+    state.velocity.push_back(uniform.vector(-1.5, 1.5));
+    state.internal_energy.push_back(fluid.heat_capacity * fluid.temperature * uniform(0.8, 1.2));
+    state.id.push_back(i);
+  }
+  std::shuffle(state.id.begin(), state.id.end(), uniform.engine());
+  return state;
+}
+
+FluidParameters wide_fluid(FrictionClosure closure) {
+  auto f = small_fluid({closure, HeatForm::temperature, true}, 0.1);
+  f.heat_capacity = 60;
+  f.friction = 2;
+  return f;
+}
+
+System wide_system(const FluidParameters& f, const State& state, unsigned threads = 1) {
+  System system(Fluid(f), wide_box(), state, Noise(5, 1));
+  system.set_threads(threads);
+  return system;
+}
+
+State path(const Method& method, const FluidParameters& f, const State& start, unsigned threads) {
+  System system = wide_system(f, start, threads);
+  const auto integrator = method.make({});
+  run(*integrator, system, time_step, 1, steps + 1);
+  return system.state();
+}
+
+State permuted(const State& state, const std::vector<std::size_t>& order) {
+  State other;
+  for (const auto place : order) {
+    other.position.push_back(state.position[place]);
+    other.velocity.push_back(state.velocity[place]);
+    other.internal_energy.push_back(state.internal_energy[place]);
+    other.id.push_back(state.id[place]);
+  }
+  return other;
+}
+
+class Parallel : public ::testing::TestWithParam<const Method*> {};
+
+TEST_P(Parallel, AnyNumberOfThreadsTakesTheSamePath) {
+  for (const auto closure : GetParam()->closures) {
+    const auto f = wide_fluid(closure);
+    const State start = wide_state(f), alone = path(*GetParam(), f, start, 1);
+    EXPECT_GT(distance(wide_box(), alone, start).velocity, 0.1);
+    EXPECT_TRUE(same_bits(path(*GetParam(), f, start, 2), alone));
+    EXPECT_TRUE(same_bits(path(*GetParam(), f, start, 4), alone));
+  }
+}
+
+TEST_P(Parallel, ARestartOnOtherThreadsTakesTheSamePath) {
+  const auto f = wide_fluid(GetParam()->closures.front());
+  const State start = wide_state(f);
+  System first = wide_system(f, start, 1);
+  const auto before = GetParam()->make({});
+  run(*before, first, time_step, 1, steps / 2 + 1);
+  System second = wide_system(f, first.state(), 3);
+  const auto after = GetParam()->make({});
+  after->load(before->save());
+  run(*after, second, time_step, steps / 2 + 1, steps + 1);
+  EXPECT_TRUE(same_bits(second.state(), path(*GetParam(), f, start, 1)));
+}
+
+TEST_P(Parallel, PlacesInMemoryDoNotMatter) {
+  const auto f = wide_fluid(GetParam()->closures.front());
+  const State start = wide_state(f);
+  std::vector<std::size_t> order(start.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  Uniform uniform(12);
+  std::shuffle(order.begin(), order.end(), uniform.engine());
+  EXPECT_TRUE(same_bits(path(*GetParam(), f, permuted(start, order), 1),
+                        permuted(path(*GetParam(), f, start, 1), order)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Parallel, ::testing::ValuesIn(methods()), test_name);
+
+TEST(SameBits, AreNotThoseOfASlightlyOtherStart) {
+  const auto f = wide_fluid(FrictionClosure::noise);
+  State start = wide_state(f);
+  const auto& method = *find_method("shardlow-s1");
+  const State end = path(method, f, start, 1);
+  start.velocity[17][1] = std::nextafter(start.velocity[17][1], 10);
+  EXPECT_FALSE(same_bits(path(method, f, start, 1), end));
+}
+
+// ---- Kernels in lanes and one by one. -----------------------------------------------------------
+
+/// Every quantity that a pair sees leaves its trace.
+template <class V>
+Transfer<V> trace(const Pair<V>& p) {
+  using std::exp;
+  using std::sqrt;
+  return {0.01 * (p.v + p.noise + p.r * p.u_i - p.w_heat * p.u_j),
+          0.01 * (p.heat_noise + sqrt(p.u_i) * p.w_friction + p.v + p.uniform),
+          0.02 * (p.noise - p.v + exp(-p.r) + p.heat_uniform)};
+}
+constexpr auto in_lanes = [](const auto& pair) { return trace(pair); };
+constexpr auto one_by_one = [](const Pair<double>& pair) { return trace(pair); };
+
+TEST(Kernels, AnswerInLanesAsTheyDoOneByOne) {
+  const auto f = wide_fluid(FrictionClosure::friction);
+  System system = wide_system(f, wide_state(f));
+  Exchange lanes, single;
+  system.accumulate(in_lanes, lanes, 2);
+  system.accumulate(one_by_one, single, 2);
+  for (std::size_t i = 0; i < system.size(); ++i) {
+    EXPECT_LT((lanes.momentum[i] - single.momentum[i]).norm(), 1e-11);
+    EXPECT_NEAR(lanes.energy[i], single.energy[i], 1e-11);
+  }
+}
+
+/// A sweep over pairs in a given order, by hand.
+State swept(const System& system, const std::vector<System::Geometry>& pairs, const Sweep& how) {
+  const Noise noise(5, 1);
+  State s = system.state();
+  const State start = s;
+  for (const auto& g : pairs) {
+    const bool frozen = how.energies == SweepEnergies::frozen;
+    const auto normals = noise.pair_normals(s.id[g.i], s.id[g.j], how.stage, true, true);
+    const auto uniforms = noise.pair_uniforms(s.id[g.i], s.id[g.j], how.stage);
+    const State& seen = frozen ? start : s;
+    const auto transfer = trace<double>(
+        {g.r, g.w_friction, g.w_heat, (s.velocity[g.i] - s.velocity[g.j]).dot(g.e),
+         seen.internal_energy[g.i], seen.internal_energy[g.j], normals.friction, normals.heat,
+         how.uniforms ? uniforms.friction : 1, how.uniforms ? uniforms.heat : 1});
+    const Vector change = transfer.momentum / system.fluid().mass() * g.e;
+    s.velocity[g.i] += change;
+    s.velocity[g.j] -= change;
+    s.internal_energy[g.i] += transfer.energy_i;
+    s.internal_energy[g.j] += transfer.energy_j;
+  }
+  return s;
+}
+
+std::vector<System::Geometry> pairs_by_ids(System& system) {
+  std::vector<System::Geometry> pairs;
+  system.for_each_pair([&](const System::Geometry& g) { pairs.push_back(g); });
+  const auto& id = system.state().id;
+  std::sort(pairs.begin(), pairs.end(), [&](const auto& a, const auto& b) {
+    return std::pair(id[a.i], id[a.j]) < std::pair(id[b.i], id[b.j]);
+  });
+  return pairs;
+}
+
+TEST(Sweeps, ByIdsAreWhatALoopOverPairsDoes) {
+  const auto f = wide_fluid(FrictionClosure::noise);
+  for (const auto energies : {SweepEnergies::fresh, SweepEnergies::frozen}) {
+    for (const auto order : {SweepOrder::forward, SweepOrder::reverse}) {
+      for (const bool uniforms : {false, true}) {
+        System system = wide_system(f, wide_state(f));
+        auto pairs = pairs_by_ids(system);
+        if (order == SweepOrder::reverse) std::reverse(pairs.begin(), pairs.end());
+        const Sweep how{.order = order,
+                        .sequence = SweepSequence::by_ids,
+                        .stage = 3,
+                        .energies = energies,
+                        .uniforms = uniforms};
+        const State expected = swept(system, pairs, how);
+        System coloured = wide_system(f, wide_state(f));
+        system.sweep(in_lanes, how);
+        EXPECT_LT(distance(wide_box(), system.state(), expected).largest(), 1e-10);
+        coloured.sweep(in_lanes,
+                       {.order = order, .stage = 3, .energies = energies, .uniforms = uniforms});
+        EXPECT_GT(distance(wide_box(), coloured.state(), expected).largest(), 1e-6);
+      }
+    }
+  }
+}
+
+TEST(Sweeps, InReverseUndoWhatASweepForwardDid) {
+  // Each pair turns its relative velocity round, which undoes itself.
+  const auto f = wide_fluid(FrictionClosure::noise);
+  const double mu = Fluid(f).reduced_mass();
+  const auto turn = [&](const auto& pair) { return Transfer{-2 * mu * pair.v}; };
+  for (const auto sequence : {SweepSequence::coloured, SweepSequence::by_ids}) {
+    for (const unsigned threads : {1U, 4U}) {
+      const State start = wide_state(f);
+      System system = wide_system(f, start, threads);
+      system.sweep(turn, {.sequence = sequence});
+      EXPECT_GT(distance(wide_box(), system.state(), start).velocity, 1);
+      System wrong = system;
+      system.sweep(turn, {.order = SweepOrder::reverse, .sequence = sequence});
+      EXPECT_LT(distance(wide_box(), system.state(), start).velocity, 1e-12);
+      wrong.sweep(turn, {.sequence = sequence});
+      EXPECT_GT(distance(wide_box(), wrong.state(), start).velocity, 1);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace driftless::testing
