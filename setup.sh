@@ -65,7 +65,7 @@ need() {
 need_to_run() {
   if [[ $compiler == *clang* ]]; then
     need clang has_command "$compiler"
-    # g++ brings OpenMP along, clang does not.
+    # The CMake file of SUNDIALS asks for OpenMP, which g++ brings along and clang does not.
     need libomp-dev has_openmp
   else
     need g++ has_command "$compiler"
@@ -81,6 +81,7 @@ need_to_run() {
   need libboost-dev has_header boost/random.hpp
   need librandom123-dev has_header Random123/philox.h
   need libhwy-dev has_header hwy/highway.h
+  need libtbb-dev has_header tbb/parallel_for.h
   need nlohmann-json3-dev has_header nlohmann/json.hpp
   need libcli11-dev has_header CLI/CLI.hpp
   need libfmt-dev has_header fmt/core.h

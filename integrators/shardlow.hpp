@@ -13,20 +13,26 @@ struct ShardlowChoices {
   bool exponential = false;
   /// Temperatures of a sweep: fresh for every pair, or those at its start, as LAMMPS does.
   SweepEnergies temperatures = SweepEnergies::fresh;
+  /// Pairs in an order that distant ones share, as in Larentzos et al., Comput. Phys. Commun. 185,
+  /// 1987 (2014), or by ascending ids.
+  SweepSequence sequence = SweepSequence::coloured;
 };
 
 /// The options of the choices, by the default of `update`.
 inline std::vector<OptionSpec> shardlow_options(const std::string& update) {
   return {{"as_published", false, "leave the noise-induced friction out"},
           {"update", update, "of a pair's velocity: \"half-implicit\" or \"exponential\""},
-          {"temperatures", std::string("fresh"), "in a sweep: \"fresh\" or \"frozen\""}};
+          {"temperatures", std::string("fresh"), "in a sweep: \"fresh\" or \"frozen\""},
+          {"order", std::string("coloured"), "of the pairs: \"coloured\" or, slower, \"ids\""}};
 }
 
 inline ShardlowChoices shardlow_choices(const Method& method, const Options& options) {
   const auto temperatures = choice(method, options, "temperatures", {"fresh", "frozen"});
   return {option<bool>(method, options, "as_published"),
           choice(method, options, "update", {"half-implicit", "exponential"}) == "exponential",
-          temperatures == "frozen" ? SweepEnergies::frozen : SweepEnergies::fresh};
+          temperatures == "frozen" ? SweepEnergies::frozen : SweepEnergies::fresh,
+          choice(method, options, "order", {"coloured", "ids"}) == "ids" ? SweepSequence::by_ids
+                                                                         : SweepSequence::coloured};
 }
 
 /// The pair update of Shardlow [SIAM J. Sci. Comput. 24, 1267 (2003)] with the pair's kinetic
@@ -74,7 +80,10 @@ Transfer<V> shardlow_exchange(const Fluid& fluid, const Pair<V>& pair, double dt
 inline void shardlow_sweep(System& system, double dt, SweepOrder order, unsigned stage,
                            const ShardlowChoices& choices) {
   const Fluid& fluid = system.fluid();
-  const Sweep how{.order = order, .stage = stage, .energies = choices.temperatures};
+  const Sweep how{.order = order,
+                  .sequence = choices.sequence,
+                  .stage = stage,
+                  .energies = choices.temperatures};
   system.sweep([&](const auto& pair) { return shardlow_exchange(fluid, pair, dt, how, choices); },
                how);
 }

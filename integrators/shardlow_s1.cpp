@@ -8,8 +8,8 @@ namespace {
 /// pair one after the other by the update of shardlow.hpp, conduction pairwise within it; then
 /// velocity Verlet with the conservative forces alone. `update` "exponential" solves a pair's
 /// velocity exactly at frozen coefficients; `temperatures` "frozen" are those at the start of the
-/// sweep, as in LAMMPS. Conserves momentum, and energy to rounding without a potential; with one
-/// the Verlet part drifts.
+/// sweep, as in LAMMPS; `order` "ids" takes the pairs by ascending ids. Conserves momentum, and
+/// energy to rounding without a potential; with one the Verlet part drifts.
 class ShardlowS1 : public Integrator {
  public:
   explicit ShardlowS1(const ShardlowChoices& choices) : choices_(choices) {}

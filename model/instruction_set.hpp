@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string_view>
 
 namespace driftless {
@@ -8,5 +9,9 @@ namespace driftless {
 /// "AVX2" (x86-64-v3) or "AVX3" (x86-64-v4, which has AVX-512), as the loader chose it for this
 /// processor; or others where it was compiled for one processor alone.
 std::string_view instruction_set();
+
+/// How many doubles this library handles at once: its Lanes::count(), which need not be the one of
+/// a program or module, compiled for other instructions.
+std::size_t lanes_of_library();
 
 }  // namespace driftless

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <type_traits>
 
@@ -30,7 +31,7 @@ class FunctionReference<void(Arguments...)> {
 /// tasks at work at the same time touch nothing in common.
 class Threads {
  public:
-  explicit Threads(unsigned count = 1) : count_(count > 0 ? count : 1) {}
+  explicit Threads(unsigned count = 1);
   unsigned count() const { return count_; }
 
   /// body(begin, end) on parts of [0, size) that together are the whole.
@@ -42,7 +43,10 @@ class Threads {
               FunctionReference<void(unsigned, std::size_t, std::size_t)> body) const;
 
  private:
+  struct Arena;
+
   unsigned count_;
+  std::shared_ptr<Arena> arena_;
 };
 
 }  // namespace driftless

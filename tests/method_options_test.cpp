@@ -63,6 +63,7 @@ std::vector<Choice> choices() {
     all.push_back({method, {{"update", other}}});
     all.push_back({method, {{"temperatures", frozen}}});
     all.push_back({method, {{"update", other}, {"temperatures", frozen}}});
+    all.push_back({method, {{"order", std::string("ids")}}});
   }
   return all;
 }

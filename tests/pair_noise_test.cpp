@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "model/lanes.hpp"
+#include "model/instruction_set.hpp"
 #include "model/noise.hpp"
 #include "tests/noise_law.hpp"
 
@@ -30,7 +30,8 @@ struct Names {
 };
 
 std::size_t padded(std::size_t count) {
-  return (count + Lanes::count() - 1) / Lanes::count() * Lanes::count();
+  const std::size_t lanes = lanes_of_library();
+  return (count + lanes - 1) / lanes * lanes;
 }
 
 using Batch = void (Noise::*)(std::size_t, const std::uint32_t*, const std::uint32_t*, unsigned,

@@ -194,6 +194,31 @@ TEST(Sweeps, ByIdsAreWhatALoopOverPairsDoes) {
   }
 }
 
+TEST(Sweeps, ByIdsDoNotSeeWhereTheCellsAreAndColouredOnesDo) {
+  const auto f = wide_fluid(FrictionClosure::noise);
+  const Vector shift(0.37, 1.21, -0.64);
+  const State start = wide_state(f);
+  State moved = start;
+  for (auto& position : moved.position) position += shift;
+  for (const auto* order : {"ids", "coloured"}) {
+    const Options options = {{"order", std::string(order)}};
+    const auto end = [&](const State& from) {
+      System system = wide_system(f, from);
+      const auto integrator = find_method("shardlow-s1")->make(options);
+      run(*integrator, system, time_step, 1, steps + 1);
+      return system.state();
+    };
+    State back = end(moved);
+    for (auto& position : back.position) position -= shift;
+    const double apart = distance(wide_box(), back, end(start)).largest();
+    if (std::string(order) == "ids") {
+      EXPECT_LT(apart, 1e-9);
+    } else {
+      EXPECT_GT(apart, 1e-6);
+    }
+  }
+}
+
 TEST(Sweeps, InReverseUndoWhatASweepForwardDid) {
   // Each pair turns its relative velocity round, which undoes itself.
   const auto f = wide_fluid(FrictionClosure::noise);
