@@ -37,37 +37,17 @@ void CellGrid::sort(const State& state, const Threads& threads) {
   id_.resize(state.size());
   position_.resize(padded);
   for (auto& values : rough_) values.resize(padded);
-  assign(state, threads);
-  order(state, threads);
-  gather(state, threads);
-}
 
-void CellGrid::assign(const State& state, const Threads& threads) {
-  if (single_) {
-    std::fill(cell_.begin(), cell_.end(), 0);
-    return;
-  }
-  const Eigen::Array3d scale = count_.cast<double>().array() / box_.lengths.array();
-  threads.ranges(state.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Array3i cell = (state.position[i].array() * scale).cast<int>();
-      // Rounding may lead out of the last cell.
-      const Eigen::Array3i inside = cell.min(count_.array() - 1);
-      cell_[i] = static_cast<std::uint32_t>(index(inside[0], inside[1], inside[2]));
-    }
-  });
-}
-
-void CellGrid::order(const State& state, const Threads& threads) {
   // Every thread counts a share of the particles, and has its own places in each cell.
   const auto cells = static_cast<std::size_t>(count_.prod());
   const std::size_t shares = threads.count();
+  const std::size_t tasks[] = {shares};
   const auto share = [&](std::size_t n) { return state.size() * n / shares; };
   next_.resize(shares * cells);
-  const std::size_t tasks[] = {shares};
   threads.phases(tasks, [&](unsigned, std::size_t, std::size_t n) {
     std::uint32_t* const counts = next_.data() + n * cells;
     std::fill_n(counts, cells, 0);
+    assign(state, share(n), share(n + 1));
     for (std::size_t i = share(n); i < share(n + 1); ++i) ++counts[cell_[i]];
   });
   begin_.resize(cells + 1);
@@ -90,22 +70,31 @@ void CellGrid::order(const State& state, const Threads& threads) {
       const auto from = entry_.begin() + begin_[c], to = entry_.begin() + begin_[c + 1];
       if (!std::is_sorted(from, to)) std::sort(from, to);
     }
+    gather(state, begin_[first], begin_[last]);
   });
 }
 
-void CellGrid::gather(const State& state, const Threads& threads) {
-  threads.ranges(state.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const auto place = static_cast<std::uint32_t>(entry_[n]);
-      place_[n] = place;
-      id_[n] = static_cast<std::uint32_t>(entry_[n] >> 32);
-      const Vector& position = state.position[place];
-      position_[n] = {position[0], position[1], position[2], 0};
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        rough_[axis][n] = static_cast<float>(position[static_cast<Eigen::Index>(axis)]);
-      }
+void CellGrid::assign(const State& state, std::size_t begin, std::size_t end) {
+  const Eigen::Array3d scale = count_.cast<double>().array() / box_.lengths.array();
+  for (std::size_t i = begin; i < end; ++i) {
+    const Eigen::Array3i cell = (state.position[i].array() * scale).cast<int>();
+    // Rounding may lead out of the last cell.
+    const Eigen::Array3i inside = cell.min(count_.array() - 1);
+    cell_[i] = static_cast<std::uint32_t>(index(inside[0], inside[1], inside[2]));
+  }
+}
+
+void CellGrid::gather(const State& state, std::size_t begin, std::size_t end) {
+  for (std::size_t n = begin; n < end; ++n) {
+    const auto place = static_cast<std::uint32_t>(entry_[n]);
+    place_[n] = place;
+    id_[n] = static_cast<std::uint32_t>(entry_[n] >> 32);
+    const Vector& position = state.position[place];
+    position_[n] = {position[0], position[1], position[2], 0};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      rough_[axis][n] = static_cast<float>(position[static_cast<Eigen::Index>(axis)]);
     }
-  });
+  }
 }
 
 }  // namespace driftless

@@ -52,9 +52,8 @@ class CellGrid {
   double rough_margin() const { return 4e-7 * box_.lengths.maxCoeff(); }
 
  private:
-  void assign(const State& state, const Threads& threads);
-  void order(const State& state, const Threads& threads);
-  void gather(const State& state, const Threads& threads);
+  void assign(const State& state, std::size_t begin, std::size_t end);
+  void gather(const State& state, std::size_t begin, std::size_t end);
 
   Box box_;
   bool single_ = false;

@@ -64,8 +64,8 @@ class Noise {
   /// (0 to 255) of the present step, by the method of Box and Muller (Ann. Math. Stat. 29, 610,
   /// 1958); none is larger than 8.6. A purpose that is a null pointer is not wanted, which changes
   /// nothing for the other one; nor does the place of a pair in the arrays. Lanes know no
-  /// remainder: all arrays are read and written up to the next multiple of Lanes::count(), of
-  /// model/lanes.hpp. Machines with and without fused multiply-add differ in rounding.
+  /// remainder: all arrays are read and written up to the next multiple of the library's
+  /// (lanes_of_library()). Machines with and without fused multiply-add differ in rounding.
   void pair_normals(std::size_t count, const std::uint32_t* id_i, const std::uint32_t* id_j,
                     unsigned stage, double* friction, double* heat) const;
 

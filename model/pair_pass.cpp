@@ -7,19 +7,8 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using Doubles = Lanes::Tag;
-using Signed = hn::RebindToSigned<Doubles>;
-
 // Closer pairs have no direction; they exchange nothing.
 constexpr double smallest_distance = 1e-10;
-
-/// As many indices as there are lanes of doubles.
-auto load_indices(const std::uint32_t* from) {
-  const hn::Rebind<std::int32_t, Doubles> narrow;
-  return hn::PromoteTo(Signed(), hn::LoadU(narrow, reinterpret_cast<const std::int32_t*>(from)));
-}
-using Index = decltype(load_indices(nullptr));
-
-Lanes gather(const double* base, Index index) { return hn::GatherIndex(Doubles(), base, index); }
 
 /// `count` brought up to whole lanes.
 std::size_t padded(std::size_t count) {
@@ -36,21 +25,21 @@ HWY_INLINE FourLanes fetch(const Quadruple* particles, const std::uint32_t* inde
   constexpr std::size_t lanes = Lanes::count();
   const Doubles doubles;
   alignas(64) double side_by_side[4 * lanes];
-  if constexpr (lanes >= 8) {
-    const hn::Half<Doubles> half;
-    for (std::size_t n = 0; n < lanes; n += 2) {
-      const auto low = hn::LoadU(half, &particles[index[n]].x);
-      const auto high = hn::LoadU(half, &particles[index[n + 1]].x);
-      hn::Store(hn::Combine(doubles, high, low), doubles, side_by_side + 4 * n);
-    }
-  } else {
-    for (std::size_t n = 0; n < lanes; ++n) {
-      for (std::size_t part = 0; part < 4; part += lanes) {
-        hn::StoreU(hn::LoadU(doubles, &particles[index[n]].x + part), doubles,
-                   side_by_side + 4 * n + part);
-      }
+#if HWY_TARGET <= HWY_AVX3
+  const hn::Half<Doubles> half;
+  for (std::size_t n = 0; n < lanes; n += 2) {
+    const auto low = hn::LoadU(half, &particles[index[n]].x);
+    const auto high = hn::LoadU(half, &particles[index[n + 1]].x);
+    hn::Store(hn::Combine(doubles, high, low), doubles, side_by_side + 4 * n);
+  }
+#else
+  for (std::size_t n = 0; n < lanes; ++n) {
+    for (std::size_t part = 0; part < 4; part += lanes) {
+      hn::StoreU(hn::LoadU(doubles, &particles[index[n]].x + part), doubles,
+                 side_by_side + 4 * n + part);
     }
   }
+#endif
   Lanes::Raw x, y, z, energy;
   hn::LoadInterleaved4(doubles, side_by_side, x, y, z, energy);
   return {x, y, z, energy};

@@ -251,8 +251,7 @@ std::uint32_t groups_in_order(const PairIndices& found, std::vector<std::uint64_
   return groups;
 }
 
-constexpr std::size_t tile_width = 3;           // cells, where the box has room
-constexpr std::size_t particles_a_block = 300;  // so that a block's arrays stay in the cache
+constexpr std::size_t particles_a_block = 800;  // so that a block's arrays stay in the cache
 
 }  // namespace
 
@@ -266,11 +265,15 @@ void PairIndices::reserve(std::size_t more) {
 PairBlocks::PairBlocks(const CellGrid& cells, double range, unsigned threads)
     : range_(range), single_(cells.single()) {
   const Eigen::Vector3i count = cells.count();
+  // Few particles fit into the cache as they are, and columns have half as many colours, each a
+  // phase to wait for; many are taken tile by tile, a tile's particles staying in the cache.
+  const bool few = cells.particles() < 10000;
+  const int width = few ? 2 : 3;
   Eigen::Vector3i tiles;
   for (int axis = 0; axis < 3; ++axis) {
-    const int width = 2 * static_cast<int>(tile_width);
-    tiles[axis] = count[axis] < 4 ? 1 : 2 * std::max(1, count[axis] / width);
+    tiles[axis] = count[axis] < 4 ? 1 : 2 * std::max(1, count[axis] / (2 * width));
   }
+  if (few) tiles[2] = 1;
   const auto all = static_cast<std::size_t>(tiles.prod());
   const std::size_t a_tile = std::max<std::size_t>(1, cells.particles() / all);
   for (int colour = 0; colour < 8; ++colour) {

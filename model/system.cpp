@@ -48,6 +48,7 @@ void System::set_threads(unsigned count) {
   cells_ = CellGrid(box_, fluid_.range(), size());
   pairs_ = PairBlocks(cells_, fluid_.range(), threads_.count());
   passes_.resize(threads_.count());
+  sums_.assign(size(), {});
   if (measured_) measure_passes();
   pairs_version_ = 0;
 }
@@ -131,10 +132,6 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
 
 void System::for_each_chunk(
     FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer) {
-  sums_.resize(size());
-  for_each_particle([&](std::size_t begin, std::size_t end) {
-    std::fill(sums_.data() + begin, sums_.data() + end, Quadruple{});
-  });
   threads_.phases(pairs_.colours(), [&](unsigned thread, std::size_t colour, std::size_t task) {
     PairBlock& block = pairs_.block(colour, task);
     PairPass& pass = passes_[thread];
@@ -147,7 +144,7 @@ void System::for_each_chunk(
   });
 }
 
-void System::scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy) const {
+void System::scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy) {
   momentum.resize(size());
   energy.resize(size());
   const auto& place = cells_.place();
@@ -155,6 +152,7 @@ void System::scatter_sums(std::vector<Vector>& momentum, std::vector<double>& en
     for (std::size_t n = begin; n < end; ++n) {
       momentum[place[n]] = Vector(sums_[n].x, sums_[n].y, sums_[n].z);
       energy[place[n]] = sums_[n].energy;
+      sums_[n] = {};  // ready for the next
     }
   });
 }
@@ -211,17 +209,21 @@ void System::sweep(const PairKernel& kernel, const Sweep& how) {
     });
   }
   const auto& place = cells_.place();
+  std::atomic<bool> sound = true;
   for_each_particle([&](std::size_t begin, std::size_t end) {
+    bool all = true;
     for (std::size_t n = begin; n < end; ++n) {
       state_.velocity[place[n]] = Vector(motion_[n].x, motion_[n].y, motion_[n].z);
       state_.internal_energy[place[n]] = motion_[n].energy;
+      all = all & is_sound(place[n]);
     }
+    if (!all) sound = false;
   });
   count_visit(true, how.uniforms);
   for (std::size_t thread = 1; thread < failed.size(); ++thread) {
     failed[0].insert(failed[0].end(), failed[thread].begin(), failed[thread].end());
   }
-  check(std::move(failed[0]));
+  if (!failed[0].empty() || !sound) throw_failure(std::move(failed[0]));
 }
 
 void System::for_each_pair(FunctionReference<void(const Geometry&)> visit) {
@@ -255,18 +257,18 @@ void System::set_motion(const Motion& motion) {
   check();
 }
 
-void System::check(std::vector<std::uint32_t> failed) const {
-  std::atomic<bool> sound = failed.empty();
-  const auto is_sound = [&](std::size_t i) {
-    const double u = state_.internal_energy[i];
-    return u > 0 && std::isfinite(u) && std::isfinite(state_.velocity[i].squaredNorm());
-  };
+void System::check() const {
+  std::atomic<bool> sound = true;
   for_each_particle([&](std::size_t begin, std::size_t end) {
     bool all = true;
     for (std::size_t i = begin; i < end; ++i) all = all & is_sound(i);
     if (!all) sound = false;
   });
-  if (sound) return;
+  if (!sound) throw_failure();
+}
+
+void System::throw_failure(std::vector<std::uint32_t> in_passing) const {
+  auto failed = std::move(in_passing);
   bool negative = !failed.empty();
   for (std::size_t i = 0; i < size(); ++i) {
     if (is_sound(i)) continue;
@@ -291,17 +293,19 @@ void System::kick(double duration) {
 
 void System::move(double duration) {
   if (frozen_) return;
-  check();
-  std::atomic<bool> inside = true;
+  std::atomic<bool> sound = true, inside = true;
   for_each_particle([&](std::size_t begin, std::size_t end) {
-    bool all = true;
+    bool all_sound = true, all_inside = true;
     for (std::size_t i = begin; i < end; ++i) {
+      all_sound = all_sound & is_sound(i);
       state_.position[i] = box_.wrap(state_.position[i] + duration * state_.velocity[i]);
-      all = all & box_.contains(state_.position[i]);
+      all_inside = all_inside & box_.contains(state_.position[i]);
     }
-    if (!all) inside = false;
+    if (!all_sound) sound = false;
+    if (!all_inside) inside = false;
   });
   ++positions_version_;
+  if (!sound) throw_failure();
   if (inside) return;
   std::vector<std::uint32_t> lost;
   for (std::size_t i = 0; i < size(); ++i) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <atomic>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "model/cell_grid.hpp"
@@ -119,7 +122,8 @@ class System {
   /// a block's pairs.
   void for_each_chunk(
       FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer);
-  void scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy) const;
+  /// Hands out the sums and leaves zeros.
+  void scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy);
   bool has_kept_normals(const PairBlock& block, unsigned stage) const;
   void gather_motion(const Motion& motion, std::vector<Quadruple>& gathered) const;
   void count_visit(bool noise, bool uniforms);
@@ -127,7 +131,16 @@ class System {
   void for_each_particle(FunctionReference<void(std::size_t, std::size_t)> body) const {
     threads_.ranges(size(), body);
   }
-  void check(std::vector<std::uint32_t> failed = {}) const;
+  /// Whether a particle's velocity and internal energy are those of a particle.
+  bool is_sound(std::size_t place) const {
+    const double u = state_.internal_energy[place];
+    return (u > 0) & (u < std::numeric_limits<double>::infinity()) &
+           std::isfinite(state_.velocity[place].squaredNorm());
+  }
+  void check() const;
+  /// Throws for the particles that are not sound and for others, given by ids, whose energies were
+  /// below zero in passing.
+  [[noreturn]] void throw_failure(std::vector<std::uint32_t> in_passing = {}) const;
 
   Fluid fluid_;
   Box box_;
@@ -150,12 +163,16 @@ class System {
 
 template <class Change>
 void System::update(Change&& change) {
+  std::atomic<bool> sound = true;
   for_each_particle([&](std::size_t begin, std::size_t end) {
+    bool all = true;
     for (std::size_t i = begin; i < end; ++i) {
       change(i, state_.velocity[i], state_.internal_energy[i]);
+      all = all & is_sound(i);
     }
+    if (!all) sound = false;
   });
-  check();
+  if (!sound) throw_failure();
 }
 
 }  // namespace driftless

@@ -1,9 +1,12 @@
 #include "experiments/bench/bench.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
+#include <numeric>
+#include <random>
+#include <stdexcept>
 
+#include "experiments/bench/bench_run.hpp"
 #include "experiments/bench/naive.hpp"
 #include "experiments/scene_keys.hpp"
 #include "model/initial.hpp"
@@ -12,48 +15,12 @@ namespace driftless {
 namespace {
 
 constexpr double density = 3;
-constexpr double time_step = 0.01;
-constexpr std::uint64_t seed = 1;
-
-/// A kind of step, in the library and in the naive reference.
-struct Kernel {
-  const char* name;
-  const char* method;
-  void (NaiveFluid::*naive_step)(double);
-
-  const Method& library() const { return *find_method(method); }
-};
-constexpr Kernel force_parallel = {"force-parallel", "averaged-drift",
-                                   &NaiveFluid::force_parallel_step};
-constexpr Kernel sequential = {"sequential", "shardlow-s1", &NaiveFluid::sequential_step};
+constexpr double time_step = bench_time_step;
+constexpr std::uint64_t seed = bench_seed;
 
 FluidParameters soft_fluid() { return find_preset("soft-fluid")->scene.fluid; }
 
-/// A method at work on a system.
-class Run {
- public:
-  Run(const Method& method, const Fluid& fluid, const BenchStart& start, bool frozen = false)
-      : system_(fluid, start.box, start.state, Noise(seed, 0), frozen),
-        integrator_(method.make({})) {}
-
-  void advance() {
-    system_.set_step(++steps_);
-    integrator_->step(system_, time_step);
-  }
-  System& system() { return system_; }
-  std::uint64_t steps() const { return steps_; }
-  /// Of a counter, per step so far.
-  double per_step(std::uint64_t count) const {
-    return static_cast<double>(count) / static_cast<double>(steps_);
-  }
-
- private:
-  System system_;
-  std::unique_ptr<Integrator> integrator_;
-  std::uint64_t steps_ = 0;
-};
-
-std::vector<Measured> time_runs(const std::vector<std::unique_ptr<Run>>& runs,
+std::vector<Measured> time_runs(const std::vector<std::unique_ptr<BenchRun>>& runs,
                                 const Sampling& sampling) {
   std::vector<Contestant> contestants;
   for (const auto& run : runs) {
@@ -69,23 +36,7 @@ FrictionClosure closure_for(const Method& method) {
   return noise || all.empty() ? FrictionClosure::noise : all.front();
 }
 
-/// Seconds of each stage per particle and step, of some more steps: looking at the clock takes
-/// time.
-StageSeconds stages_of(Run& run) {
-  constexpr int steps = 20;
-  System& system = run.system();
-  system.measure_passes();
-  const auto start = std::chrono::steady_clock::now();
-  for (int n = 0; n < steps; ++n) run.advance();
-  const std::chrono::duration<double> total = std::chrono::steady_clock::now() - start;
-  const PassSeconds passes = system.pass_seconds();
-  const double per = 1 / (steps * static_cast<double>(system.size()));
-  const double known = passes.search + passes.noise + passes.arithmetic + passes.scatter;
-  return {per * passes.search, per * passes.noise, per * passes.arithmetic, per * passes.scatter,
-          per * (total.count() - known)};
-}
-
-MethodRow method_row(const Method& method, Run& run, const Measured& measured) {
+MethodRow method_row(const Method& method, BenchRun& run, const Measured& measured) {
   System& system = run.system();
   MethodRow row;
   row.method = method.name;
@@ -136,7 +87,9 @@ BenchPlan quick_plan() {
   return plan;
 }
 
-BenchStart bench_start(std::size_t particles) {
+namespace {
+
+BenchStart equilibrated_start(std::size_t particles) {
   const Fluid fluid(soft_fluid());
   const Noise noise(seed, 0);
   const Box box = make_box(fluid, Layout::fluid, particles, density, 0);
@@ -146,7 +99,7 @@ BenchStart bench_start(std::size_t particles) {
   draw_microcanonical(fluid, Layout::fluid, energy, noise, state);
   System system(fluid, box, state, noise);
   system.set_threads(usable_cpus());
-  const auto integrator = sequential.library().make({});
+  const auto integrator = bench_kinds[1].library().make({});
   // Particles at random repel each other and heat up: fresh velocities and energies, now and then,
   // keep the temperature while positions become a fluid's.
   constexpr std::uint64_t steps = 50, fresh_every = 10;
@@ -161,25 +114,79 @@ BenchStart bench_start(std::size_t particles) {
   return {fluid, box, system.state()};
 }
 
+/// How often the box of a smaller start is repeated along each axis; 1 if that does not work out.
+int copies_of_a_start(std::size_t particles) {
+  constexpr std::size_t least = 3000, most = 100'000;
+  for (std::size_t copies = 2; copies * copies * copies * least <= particles; ++copies) {
+    const std::size_t cube = copies * copies * copies;
+    if (particles % cube == 0 && particles / cube <= most) return static_cast<int>(copies);
+  }
+  return 1;
+}
+
+/// Copies of a fluid side by side, with velocities and energies of their own, shuffled: a particle's
+/// place in storage tells nothing of its position, as after a long run.
+BenchStart repeated(const BenchStart& part, int copies) {
+  BenchStart whole{part.fluid, {part.box.lengths * copies}, {}};
+  auto& positions = whole.state.position;
+  for (int z = 0; z < copies; ++z) {
+    for (int y = 0; y < copies; ++y) {
+      for (int x = 0; x < copies; ++x) {
+        const Vector shift = part.box.lengths.cwiseProduct(Vector(x, y, z));
+        for (const auto& position : part.state.position) {
+          positions.push_back(whole.box.wrap(position + shift));
+        }
+      }
+    }
+  }
+  std::shuffle(positions.begin(), positions.end(), std::mt19937_64(seed));
+  const std::size_t particles = positions.size();
+  whole.state.velocity.assign(particles, Vector::Zero());
+  whole.state.internal_energy.assign(particles, 0);
+  whole.state.id.resize(particles);
+  std::iota(whole.state.id.begin(), whole.state.id.end(), 0U);
+  const auto law = microcanonical_law(whole.fluid, Layout::fluid, particles);
+  draw_microcanonical(whole.fluid, Layout::fluid,
+                      law.energy_at(whole.fluid.parameters().temperature), Noise(seed, 0),
+                      whole.state);
+  return whole;
+}
+
+}  // namespace
+
+BenchStart bench_start(std::size_t particles) {
+  constexpr std::size_t equilibrated = 200'000;
+  const int copies = particles > equilibrated ? copies_of_a_start(particles) : 1;
+  if (copies == 1) return equilibrated_start(particles);
+  const auto cube = static_cast<std::size_t>(copies * copies * copies);
+  return repeated(equilibrated_start(particles / cube), copies);
+}
+
 std::vector<KernelRow> bench_kernels(const BenchPlan& plan, std::size_t particles) {
   const BenchStart start = bench_start(particles);
   std::vector<KernelRow> rows;
-  for (const Kernel& kernel : {force_parallel, sequential}) {
-    NaiveFluid naive(start.fluid.parameters(), start.box, start.state, seed);
-    std::vector<Contestant> contestants = {
-        {[&] { (naive.*kernel.naive_step)(time_step); }, particles}};
-    std::vector<std::unique_ptr<Run>> runs;
+  for (const BenchKernel& kernel : bench_kinds) {
+    std::vector<std::unique_ptr<BenchRun>> runs;
+    std::vector<Contestant> contestants;
     for (const unsigned threads : plan.threads) {
-      auto& run = *runs.emplace_back(std::make_unique<Run>(kernel.library(), start.fluid, start));
+      auto& run =
+          *runs.emplace_back(std::make_unique<BenchRun>(kernel.library(), start.fluid, start));
       run.system().set_threads(threads);
       contestants.push_back({[&run] { run.advance(); }, particles});
+    }
+    std::unique_ptr<NaiveFluid> naive;
+    if (particles <= plan.most_naive) {
+      naive = std::make_unique<NaiveFluid>(start.fluid.parameters(), start.box, start.state, seed);
+      contestants.push_back({[&] { ((*naive).*kernel.naive_step)(time_step); }, particles});
     }
     const auto measured = time_in_turns(contestants, plan.sampling);
     for (std::size_t n = 0; n < runs.size(); ++n) {
       // The bench's own fluid and step are no trouble for either scheme.
-      if (!measured[n + 1].failure.empty()) throw std::runtime_error(measured[n + 1].failure);
-      rows.push_back({kernel.name, particles, plan.threads[n], measured[n + 1].nanoseconds,
-                      measured[0].nanoseconds});
+      if (!measured[n].failure.empty()) throw std::runtime_error(measured[n].failure);
+      KernelRow row{kernel.name, particles, plan.threads[n], measured[n].nanoseconds};
+      if (naive) row.naive = measured.back().nanoseconds;
+      row.bytes = bytes_per_particle(runs[n]);
+      rows.push_back(row);
     }
   }
   return rows;
@@ -188,14 +195,14 @@ std::vector<KernelRow> bench_kernels(const BenchPlan& plan, std::size_t particle
 std::vector<SceneRow> bench_scenes(const BenchPlan& plan) {
   const BenchStart start = bench_start(plan.table_particles);
   std::vector<SceneRow> rows;
-  std::vector<std::unique_ptr<Run>> runs;
-  for (const Kernel& kernel : {force_parallel, sequential}) {
+  std::vector<std::unique_ptr<BenchRun>> runs;
+  for (const BenchKernel& kernel : bench_kinds) {
     for (const auto& omission : omissions) {
       FluidParameters fluid = start.fluid.parameters();
       omission.leave_out(fluid);
-      runs.push_back(std::make_unique<Run>(kernel.library(), Fluid(fluid), start, omission.frozen));
+      runs.push_back(std::make_unique<BenchRun>(kernel.library(), Fluid(fluid), start, omission.frozen));
       runs.back()->system().set_threads(1);
-      rows.push_back({omission.name, kernel.name, plan.table_particles, {}, 1});
+      rows.push_back({omission.name, kernel.name, plan.table_particles});
     }
   }
   const auto measured = time_runs(runs, plan.sampling);
@@ -205,17 +212,19 @@ std::vector<SceneRow> bench_scenes(const BenchPlan& plan) {
     rows[n].nanoseconds = measured[n].nanoseconds;
     if (rows[n].scene == omissions[0].name) full = measured[n].nanoseconds.median;
     rows[n].share = measured[n].nanoseconds.median / full;
+    rows[n].stages = stages_of(*runs[n]);
   }
+  for (std::size_t n = 0; n < rows.size(); ++n) rows[n].bytes = bytes_per_particle(runs[n]);
   return rows;
 }
 
 std::vector<MethodRow> bench_methods(const BenchPlan& plan) {
   const BenchStart start = bench_start(plan.table_particles);
-  std::vector<std::unique_ptr<Run>> runs;
+  std::vector<std::unique_ptr<BenchRun>> runs;
   for (const Method* method : methods()) {
     FluidParameters fluid = start.fluid.parameters();
     fluid.friction_closure = closure_for(*method);
-    runs.push_back(std::make_unique<Run>(*method, Fluid(fluid), start));
+    runs.push_back(std::make_unique<BenchRun>(*method, Fluid(fluid), start));
     runs.back()->system().set_threads(1);
   }
   const auto measured = time_runs(runs, plan.sampling);

@@ -6,6 +6,9 @@
 #include <filesystem>
 
 #include "experiments/bench/bench.hpp"
+#include "experiments/bench/bench_page.hpp"
+#include "experiments/bench/bench_text.hpp"
+#include "experiments/bench/scaling.hpp"
 #include "experiments/files.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/study.hpp"
@@ -34,20 +37,10 @@ std::string command(const BenchArguments& arguments) {
   if (!arguments.particles.empty()) {
     words.push_back(fmt::format("--particles {}", fmt::join(arguments.particles, ",")));
   }
+  if (arguments.scaling) words.push_back("--scaling");
   if (!arguments.json.empty()) words.push_back("--json " + arguments.json);
+  if (!arguments.page.empty()) words.push_back("--page " + arguments.page);
   return fmt::format("{}", fmt::join(words, " "));
-}
-
-/// "562.1 [560.0, 570.3]".
-std::string text(const Spread& spread) {
-  return fmt::format("{:.1f} [{:.1f}, {:.1f}]", spread.median, spread.lower, spread.upper);
-}
-
-/// Prints at once, so that a long bench shows how far it is.
-template <class... Values>
-void print_line(fmt::format_string<Values...> format, Values&&... values) {
-  fmt::print(format, std::forward<Values>(values)...);
-  std::fflush(stdout);
 }
 
 /// How much faster than the same kernel on one thread; "" if that was not measured.
@@ -62,15 +55,16 @@ std::string over_one_thread(const KernelRow& row, const std::vector<KernelRow>& 
 }
 
 std::vector<KernelRow> print_kernels(const BenchPlan& plan) {
-  print_line("\n{:<14} {:>9} {:>7}  {:>26}  {:>26}  {:>8}  {:>8}\n", "kernel", "particles",
-             "threads", "ns per particle-step", "naive, one core", "speed-up", "over one");
+  print_line("\n{:<14} {:>9} {:>7}  {:>26}  {:>26}  {:>8}  {:>8}  {:>8}\n", "kernel", "particles",
+             "threads", "ns per particle-step", "naive, one core", "speed-up", "over one", "bytes");
   std::vector<KernelRow> all;
   for (const auto particles : plan.particles) {
     const auto rows = bench_kernels(plan, particles);
     for (const auto& row : rows) {
-      print_line("{:<14} {:>9} {:>7}  {:>26}  {:>26}  {:>8.2f}  {:>8}\n", row.kernel, row.particles,
-                 row.threads, text(row.nanoseconds), text(row.naive), row.speed_up(),
-                 over_one_thread(row, rows));
+      print_line("{:<14} {:>9} {:>7}  {:>26}  {:>26}  {:>8}  {:>8}  {:>8}\n", row.kernel,
+                 row.particles, row.threads, text(row.nanoseconds), text(row.naive),
+                 row.has_naive() ? fmt::format("{:.2f}", row.speed_up()) : "-",
+                 over_one_thread(row, rows), bytes_text(row.bytes));
     }
     all.insert(all.end(), rows.begin(), rows.end());
   }
@@ -119,24 +113,37 @@ nlohmann::json quartiles(const Spread& spread) {
   return {{"lower", spread.lower}, {"upper", spread.upper}, {"samples", spread.samples}};
 }
 
-template <class Row>
-nlohmann::json all_to_json(const std::vector<Row>& rows) {
-  auto all = nlohmann::json::array();
-  for (const auto& row : rows) all.push_back(to_json(row));
-  return all;
+nlohmann::json number_or_null(const std::optional<double>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json();
 }
 
 }  // namespace
 
+nlohmann::json to_json(const StageSeconds& stages) {
+  return {{"search", 1e9 * stages.search},
+          {"noise", 1e9 * stages.noise},
+          {"arithmetic", 1e9 * stages.arithmetic},
+          {"scatter", 1e9 * stages.scatter},
+          {"integration", 1e9 * stages.integration}};
+}
+
 nlohmann::json to_json(const KernelRow& row) {
-  return {{"kernel", row.kernel},
-          {"particles", row.particles},
-          {"threads", row.threads},
-          {"ns_per_particle_step", row.nanoseconds.median},
-          {"spread", quartiles(row.nanoseconds)},
-          {"naive_ns_per_particle_step", row.naive.median},
-          {"naive_spread", quartiles(row.naive)},
-          {"speed_up", row.speed_up()}};
+  nlohmann::json json = {{"kernel", row.kernel},
+                         {"particles", row.particles},
+                         {"threads", row.threads},
+                         {"ns_per_particle_step", row.nanoseconds.median},
+                         {"spread", quartiles(row.nanoseconds)},
+                         {"naive_ns_per_particle_step", nullptr},
+                         {"naive_spread", nullptr},
+                         {"speed_up", nullptr},
+                         {"bytes_per_particle", number_or_null(row.bytes)}};
+  if (row.has_naive()) {
+    json["naive_ns_per_particle_step"] = row.naive.median;
+    json["naive_spread"] = quartiles(row.naive);
+    json["speed_up"] = row.speed_up();
+  }
+  if (row.stages.total() > 0) json["stage_ns_per_particle_step"] = to_json(row.stages);
+  return json;
 }
 
 nlohmann::json to_json(const SceneRow& row) {
@@ -145,7 +152,9 @@ nlohmann::json to_json(const SceneRow& row) {
           {"particles", row.particles},
           {"ns_per_particle_step", row.nanoseconds.median},
           {"spread", quartiles(row.nanoseconds)},
-          {"share_of_full", row.share}};
+          {"share_of_full", row.share},
+          {"bytes_per_particle", number_or_null(row.bytes)},
+          {"stage_ns_per_particle_step", to_json(row.stages)}};
 }
 
 nlohmann::json to_json(const MethodRow& row) {
@@ -163,16 +172,14 @@ nlohmann::json to_json(const MethodRow& row) {
   json["solver_iterations_per_step"] = row.iterations;
   json["random_numbers_per_pair"] = row.numbers;
   if (row.factor > 0) json["factor"] = row.factor;
-  json["stage_ns_per_particle_step"] = {{"search", 1e9 * row.stages.search},
-                                        {"noise", 1e9 * row.stages.noise},
-                                        {"arithmetic", 1e9 * row.stages.arithmetic},
-                                        {"scatter", 1e9 * row.stages.scatter},
-                                        {"integration", 1e9 * row.stages.integration}};
+  json["stage_ns_per_particle_step"] = to_json(row.stages);
   return json;
 }
 
 void run_bench(const BenchArguments& arguments) {
-  if (!arguments.json.empty()) check_writable(arguments.json);
+  for (const auto& file : {arguments.json, arguments.page}) {
+    if (!file.empty()) check_writable(file);
+  }
   BenchPlan plan = arguments.quick ? quick_plan() : full_plan();
   if (!arguments.threads.empty()) plan.threads = arguments.threads;
   if (!arguments.particles.empty()) plan.particles = arguments.particles;
@@ -185,18 +192,22 @@ void run_bench(const BenchArguments& arguments) {
   print_line(
       "Soft fluid with friction and conduction, density 3, time step 0.01. Medians and quartiles\n"
       "of at most {} interleaved samples, by the clock on the wall. Force-parallel is\n"
-      "averaged-drift, sequential is shardlow-s1; naive is the same scheme in plain code.\n",
+      "averaged-drift, sequential is shardlow-s1; naive is the same scheme in plain code.\n"
+      "Bytes are of memory per particle, beyond the 60 of its state.\n",
       plan.sampling.samples);
   const auto kernels = print_kernels(plan);
   const auto scenes = print_scenes(plan);
   const auto methods = print_methods(plan);
-  if (arguments.json.empty()) return;
-  const nlohmann::json all = {{"format", "driftless-bench/1"},
-                              {"provenance", origin},
-                              {"rows", all_to_json(kernels)},
-                              {"scenes", all_to_json(scenes)},
-                              {"methods", all_to_json(methods)}};
-  write_atomically(arguments.json, all.dump(2) + "\n");
+  nlohmann::json all = {{"format", "driftless-bench/1"},
+                        {"provenance", origin},
+                        {"rows", all_to_json(kernels)},
+                        {"scenes", all_to_json(scenes)},
+                        {"methods", all_to_json(methods)}};
+  if (arguments.scaling || !arguments.page.empty()) {
+    all["scaling"] = run_scaling(scaling_plan(arguments.quick));
+  }
+  if (!arguments.json.empty()) write_atomically(arguments.json, all.dump(2) + "\n");
+  if (!arguments.page.empty()) write_atomically(arguments.page, bench_page(all));
 }
 
 }  // namespace driftless

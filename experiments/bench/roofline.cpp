@@ -1,0 +1,110 @@
+#include "experiments/bench/roofline.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <stdexcept>
+
+#include "model/cell_grid.hpp"
+#include "model/threads.hpp"
+
+namespace driftless {
+namespace {
+
+constexpr double number = sizeof(double), index = sizeof(std::uint32_t), vector = 3 * number,
+                 quadruple = sizeof(Quadruple);
+constexpr double line = 64;
+constexpr double vector_line = line * (1 + 2.0 / 8);  // 2 of 8 places lie across two lines
+constexpr double halo = 94.0 / 27;
+constexpr double pair = 2 * index;
+
+// Once for each set of positions; model/cell_grid.cpp and model/pairs.cpp.
+constexpr Traffic sort = {"particles into cells",
+                          vector +                       // positions
+                              3 * index + index +        // cells written, read twice; ids
+                              2 * number +               // entries read; grid's counters, about
+                              2 * index + quadruple +    // place, id and position by cells
+                              3 * sizeof(float),         // and in single precision
+                          0,
+                          2 * line + vector_line};  // entries written; positions fetched
+constexpr Traffic search = {"pairs found", 3 * sizeof(float) + index, pair, 0};
+
+// Velocities and energies into the order of cells.
+constexpr Traffic gather = {"motion by cells", index + quadruple, 0, vector_line + line};
+// And sums, or motion, back.
+constexpr Traffic scatter = {"results by particles", index + quadruple, 0,
+                             2 * vector_line + 2 * line};
+// A sum over pairs of what depends on positions alone: sums cleared, then read and written.
+constexpr Traffic repulsion = {"pass over pairs: repulsion",
+                               quadruple + halo * (quadruple + 2 * quadruple), pair, 0};
+constexpr Traffic exchange = {"pass over pairs: exchange",
+                              quadruple + halo * (2 * quadruple + index + 2 * quadruple), pair, 0};
+// Pairs put into groups, then visited; the particles' motion itself is changed.
+constexpr Traffic groups = {"pairs into groups", halo * 2 * number, 2 * pair, 0};
+constexpr Traffic sweep = {"pass over pairs: sweep", halo * (quadruple + index + 2 * quadruple),
+                           pair, 0};
+
+constexpr double motion = vector + number;
+constexpr Traffic check = {"check of the motion", motion, 0, 0};
+constexpr Traffic move = {"move", 2 * vector + vector, 0, 0};
+constexpr Traffic apply = {"exchange applied", motion + 2 * motion, 0, 0};
+constexpr Traffic kick = {"kick", vector + 2 * vector, 0, 0};
+
+}  // namespace
+
+std::vector<Traffic> step_traffic(const std::string& kernel) {
+  if (kernel == "force-parallel") {
+    return {sort, search, gather, exchange, scatter, check, move, apply, check};
+  }
+  if (kernel == "sequential") {
+    return {sort, search,  groups, gather, sweep,     scatter, check,
+            kick, check,   move,   repulsion, scatter, kick};
+  }
+  throw std::invalid_argument("no such kernel: " + kernel);
+}
+
+double bytes_per_step(const std::string& kernel, double pairs_per_particle) {
+  double sum = 0;
+  for (const auto& part : step_traffic(kernel)) {
+    sum += part.in_order + part.per_pair * pairs_per_particle + part.lines;
+  }
+  return sum;
+}
+
+std::size_t beyond_the_cache() {
+  constexpr std::size_t least = std::size_t{128} << 20, most = std::size_t{1} << 30;
+  std::size_t cache = 0;
+#if defined(_SC_LEVEL3_CACHE_SIZE)
+  const long found = sysconf(_SC_LEVEL3_CACHE_SIZE);
+  if (found > 0) cache = static_cast<std::size_t>(found);
+#endif
+  return std::clamp(2 * cache, least, most);
+}
+
+double triad_bandwidth(std::size_t bytes, unsigned threads) {
+  constexpr int passes = 5;
+  constexpr double factor = 3;
+  const std::size_t size = bytes / sizeof(double);
+  const auto fresh = [&] { return std::make_unique<double[]>(size); };
+  const auto a = fresh(), b = fresh(), c = fresh();
+  const Threads workers(threads);
+  workers.ranges(size, [&](std::size_t begin, std::size_t end) {
+    std::fill(b.get() + begin, b.get() + end, 1.0);
+    std::fill(c.get() + begin, c.get() + end, 2.0);
+  });
+  double best = 0;
+  for (int pass = 0; pass < passes; ++pass) {
+    const auto start = std::chrono::steady_clock::now();
+    workers.ranges(size, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) a[n] = b[n] + factor * c[n];
+    });
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    best = std::max(best, 3 * static_cast<double>(size * sizeof(double)) / elapsed.count());
+  }
+  if (size > 0 && a[size / 2] != 1.0 + factor * 2.0) throw std::logic_error("the triad is wrong");
+  return best;
+}
+
+}  // namespace driftless
