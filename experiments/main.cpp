@@ -204,8 +204,9 @@ int main(int argc, char** argv) {
   auto* bench_command = app.add_subcommand("bench", "time the kernels, the scenes and the methods");
   bench_command->add_flag("--quick", bench.quick, "fewer samples, no large system");
   bench_command->add_option("--json", bench.json, "write the tables to this file too");
-  bench_command->add_flag("--scaling", bench.scaling,
-                          "sizes to 10 million particles (--quick: 300000), threads, terms, limits");
+  bench_command->add_flag(
+      "--scaling", bench.scaling,
+      "sizes to 10 million particles (--quick: 300000), threads, terms, limits");
   bench_command->add_option("--page", bench.page,
                             "write a page with charts to this HTML file; implies --scaling");
   bench_command->add_option("-t,--threads", bench.threads, "list of numbers of threads, as 1,4")

@@ -10,7 +10,8 @@
 
 namespace driftless {
 
-CellGrid::CellGrid(const Box& box, double range, std::size_t particles) : box_(box) {
+CellGrid::CellGrid(const Box& box, double range, std::size_t particles)
+    : box_(box), particles_(particles) {
   if (box.lengths.minCoeff() < 2 * range) {
     std::ostringstream message;
     message << "the box's shortest side " << box.lengths.minCoeff()
@@ -29,6 +30,7 @@ CellGrid::CellGrid(const Box& box, double range, std::size_t particles) : box_(b
 }
 
 void CellGrid::sort(const State& state, const Threads& threads) {
+  particles_ = state.size();
   // Vectors of single precision are read beyond the end.
   const std::size_t padded = state.size() + 2 * Lanes::count();
   cell_.resize(state.size());

@@ -39,7 +39,7 @@ class CellGrid {
                static_cast<std::size_t>(count_[0]) +
            static_cast<std::size_t>(x);
   }
-  std::size_t particles() const { return place_.size(); }
+  std::size_t particles() const { return particles_; }
 
   /// Sorts the particles anew.
   void sort(const State& state, const Threads& threads);
@@ -56,6 +56,7 @@ class CellGrid {
   void gather(const State& state, std::size_t begin, std::size_t end);
 
   Box box_;
+  std::size_t particles_;
   bool single_ = false;
   Eigen::Vector3i count_;
   std::vector<std::uint32_t> begin_, next_;

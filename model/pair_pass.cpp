@@ -65,7 +65,7 @@ void PairPass::reserve(std::size_t pairs) {
   if (pairs <= capacity_) return;
   constexpr std::size_t columns = sizeof(PairArrays) / sizeof(double*);
   static_assert(sizeof(PairArrays) == columns * sizeof(double*));
-  capacity_ = (pairs + pairs / 2 + 15) / 8 * 8;
+  capacity_ = (pairs + pairs / 8 + 15) / 8 * 8;
   const std::size_t stride = capacity_ + 2 * 8;  // lanes of any processor, and no two columns alike
   memory_.assign(columns * stride, 0.0);
   double* next = memory_.data();

@@ -52,6 +52,13 @@ class PassClock {
 /// positions, noise from ids, motion of the particles, the kernel, and back to the particles.
 class PairPass {
  public:
+  PairPass() = default;
+  /// A copy has memory of its own, with nothing in it yet.
+  PairPass(const PairPass& other) : measured_(other.measured_) {}
+  PairPass& operator=(const PairPass& other) { return *this = PairPass(other); }
+  PairPass(PairPass&&) = default;
+  PairPass& operator=(PairPass&&) = default;
+
   /// What the passes below speak of: these pairs of this fluid from `first` on.
   void take(const Fluid& fluid, const CellGrid& cells, const PairIndices& pairs, std::size_t first,
             std::size_t count);

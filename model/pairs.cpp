@@ -192,8 +192,10 @@ void order_by_ids(PairIndices& found, const std::vector<std::uint32_t>& ids) {
 void pad(PairIndices& pairs) {
   pairs.reserve(0);
   const auto end = static_cast<std::ptrdiff_t>(pairs.size);
-  std::fill_n(pairs.i.begin() + end, 2 * Lanes::count(), 0);
-  std::fill_n(pairs.j.begin() + end, 2 * Lanes::count(), 0);
+  // One of this block: another may be at work on any other particle.
+  const std::uint32_t own = pairs.size > 0 ? pairs.i[pairs.size - 1] : 0;
+  std::fill_n(pairs.i.begin() + end, 2 * Lanes::count(), own);
+  std::fill_n(pairs.j.begin() + end, 2 * Lanes::count(), own);
 }
 
 /// Pairs that belong to groups, put side by side.
@@ -251,14 +253,14 @@ std::uint32_t groups_in_order(const PairIndices& found, std::vector<std::uint64_
   return groups;
 }
 
-constexpr std::size_t particles_a_block = 800;  // so that a block's arrays stay in the cache
+constexpr std::size_t particles_a_block = 500;  // so that a block's arrays stay in the cache
 
 }  // namespace
 
 void PairIndices::reserve(std::size_t more) {
   const std::size_t needed = size + more + 2 * Lanes::count();
   if (needed <= j.size()) return;
-  i.resize(needed + needed / 2);
+  i.resize(needed + needed / 8);
   j.resize(i.size());
 }
 
@@ -315,6 +317,7 @@ void PairBlocks::find(const CellGrid& cells, const Threads& threads) {
     block.grouped = false;
     block.normals.clear();
     for (const auto& [from, to] : block.tiles) {
+      if (limit == 0) break;
       if (cells.single()) search_all(block.found, cells, limit);
       if (cells.single()) break;
       for (int z = from[2]; z < to[2]; ++z) {

@@ -45,6 +45,10 @@ System::System(const Fluid& fluid, const Box& box, State state, const Noise& noi
 
 void System::set_threads(unsigned count) {
   threads_ = Threads(count);
+  cut_cells();
+}
+
+void System::cut_cells() {
   cells_ = CellGrid(box_, fluid_.range(), size());
   pairs_ = PairBlocks(cells_, fluid_.range(), threads_.count());
   passes_.resize(threads_.count());
@@ -65,11 +69,12 @@ PassSeconds System::pass_seconds() const {
 }
 
 void System::find_pairs() {
+  if (summing_) forget_sums();
   if (pairs_version_ == positions_version_) return;
   const PassClock clock(passes_[0].part(&PassSeconds::search));
-  pairs_version_ = positions_version_;
   cells_.sort(state_, threads_);
   pairs_.find(cells_, threads_);
+  pairs_version_ = positions_version_;
 }
 
 void System::gather_motion(const Motion& motion, std::vector<Quadruple>& gathered) const {
@@ -115,6 +120,7 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
     } else {
       pass.draw_normals(noise_, stage);
     }
+    pass.draw_no_uniforms();
     if (trial && !kept) {
       // An implicit method will come again.
       block.normals.resize(2 * pairs);
@@ -132,6 +138,7 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
 
 void System::for_each_chunk(
     FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer) {
+  summing_ = true;
   threads_.phases(pairs_.colours(), [&](unsigned thread, std::size_t colour, std::size_t task) {
     PairBlock& block = pairs_.block(colour, task);
     PairPass& pass = passes_[thread];
@@ -155,6 +162,13 @@ void System::scatter_sums(std::vector<Vector>& momentum, std::vector<double>& en
       sums_[n] = {};  // ready for the next
     }
   });
+  summing_ = false;
+}
+
+void System::forget_sums() {
+  sums_.assign(size(), {});
+  for (auto& block : pairs_.all()) block.normals.clear();
+  summing_ = false;
 }
 
 void System::sweep_groups(PairPass& pass, const PairGroups& groups, const PassParticles& particles,
@@ -173,7 +187,8 @@ void System::sweep_groups(PairPass& pass, const PairGroups& groups, const PassPa
     const std::size_t from = g > 0 ? groups.end[g - 1] : 0, to = groups.end[g];
     pass.motion(particles, from, to);
     pass.run(kernel, from, to);
-    if (pass.apply(particles, from, to)) continue;
+    // Frozen energies are those at the start for every pair: only the end counts.
+    if (pass.apply(particles, from, to) || how.energies == SweepEnergies::frozen) continue;
     // A later pair could lift an energy above zero again: a fault in passing is a fault.
     for (std::size_t pair = from; pair < to; ++pair) {
       for (const auto particle : {groups.pairs.i[pair], groups.pairs.j[pair]}) {
@@ -235,7 +250,8 @@ void System::for_each_pair(FunctionReference<void(const Geometry&)> visit) {
     pass.geometry();
     const PairArrays& pair = pass.arrays();
     for (std::size_t n = 0; n < block.found.size; ++n) {
-      if (pair.r[n] >= fluid_.range() || pair.r[n] == 0) continue;
+      const bool has_direction = pair.e_x[n] != 0 || pair.e_y[n] != 0 || pair.e_z[n] != 0;
+      if (pair.r[n] >= fluid_.range() || !has_direction) continue;
       visit({place[block.found.i[n]], place[block.found.j[n]],
              Vector(pair.e_x[n], pair.e_y[n], pair.e_z[n]), pair.r[n], pair.w_friction[n],
              pair.w_heat[n]});
@@ -297,9 +313,12 @@ void System::move(double duration) {
   for_each_particle([&](std::size_t begin, std::size_t end) {
     bool all_sound = true, all_inside = true;
     for (std::size_t i = begin; i < end; ++i) {
-      all_sound = all_sound & is_sound(i);
-      state_.position[i] = box_.wrap(state_.position[i] + duration * state_.velocity[i]);
-      all_inside = all_inside & box_.contains(state_.position[i]);
+      const Vector moved = box_.wrap(state_.position[i] + duration * state_.velocity[i]);
+      const bool sound_here = is_sound(i), inside_here = box_.contains(moved);
+      // Whoever looks at a failed state finds every particle in the box.
+      if (sound_here & inside_here) state_.position[i] = moved;
+      all_sound = all_sound & sound_here;
+      all_inside = all_inside & inside_here;
     }
     if (!all_sound) sound = false;
     if (!all_inside) inside = false;
@@ -307,20 +326,21 @@ void System::move(double duration) {
   ++positions_version_;
   if (!sound) throw_failure();
   if (inside) return;
+  // So far beyond the box that rounding leaves no image inside.
   std::vector<std::uint32_t> lost;
   for (std::size_t i = 0; i < size(); ++i) {
-    if (!box_.contains(state_.position[i])) lost.push_back(state_.id[i]);
+    const Vector moved = box_.wrap(state_.position[i] + duration * state_.velocity[i]);
+    if (!box_.contains(moved)) lost.push_back(state_.id[i]);
   }
-  // So far beyond the box that rounding leaves no image inside.
   throw StepFailure(FailureCause::non_finite, std::move(lost));
 }
 
 void System::renew_conservative() {
   if (conservative_version_ == positions_version_) return;
-  conservative_version_ = positions_version_;
   if (!fluid_.has_repulsion()) {
     force_.assign(size(), Vector::Zero());
     potential_share_.assign(size(), 0.0);
+    conservative_version_ = positions_version_;
     return;
   }
   find_pairs();
@@ -334,6 +354,7 @@ void System::renew_conservative() {
     pass.run(kernel, 0, count);
   });
   scatter_sums(force_, potential_share_);
+  conservative_version_ = positions_version_;
   count_visit(false, false);
 }
 
@@ -372,9 +393,10 @@ Vector System::momentum() const {
 }
 
 void System::set_state(State state) {
+  const bool as_many = state.size() == size();
   state_ = valid(box_, std::move(state));
-  set_threads(threads_.count());
   ++positions_version_;
+  if (!as_many) cut_cells();
 }
 
 }  // namespace driftless

@@ -80,7 +80,8 @@ class System {
   void apply(const Exchange& exchange);
   /// Replaces velocities and internal energies. Throws StepFailure.
   void set_motion(const Motion& motion);
-  /// change(place, velocity, internal_energy) for every particle. Throws StepFailure.
+  /// change(place, velocity, internal_energy) for every particle, on any thread. Throws
+  /// StepFailure.
   template <class Change>
   void update(Change&& change);
 
@@ -117,11 +118,15 @@ class System {
   void sweep(const PairKernel& kernel, const Sweep& how);
   void sweep_groups(PairPass& pass, const PairGroups& groups, const PassParticles& particles,
                     const PairKernel& kernel, const Sweep& how, std::vector<std::uint32_t>& failed);
+  /// Makes cells, blocks and memory for as many particles and threads as there are.
+  void cut_cells();
   void find_pairs();
   /// Sums what pairs exchange: answer(pass, block, first, count) has the pass find it for a part of
   /// a block's pairs.
   void for_each_chunk(
       FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer);
+  /// Leaves nothing behind of a visit that a kernel has broken off.
+  void forget_sums();
   /// Hands out the sums and leaves zeros.
   void scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy);
   bool has_kept_normals(const PairBlock& block, unsigned stage) const;
@@ -153,6 +158,7 @@ class System {
   std::vector<PairPass> passes_;  ///< one for each thread
   Counters counters_;
   bool measured_ = false;
+  bool summing_ = false;  ///< whether the sums are in use, or a kernel has left them so
   std::uint64_t positions_version_ = 1;
   std::uint64_t pairs_version_ = 0;
   std::uint64_t conservative_version_ = 0;

@@ -7,6 +7,8 @@
 #include <set>
 
 #include "experiments/bench/bench.hpp"
+#include "experiments/bench/bench_page.hpp"
+#include "experiments/bench/scaling.hpp"
 #include "experiments/study.hpp"
 
 namespace driftless {
@@ -103,7 +105,7 @@ TEST(Bench, PlansCoverOneThreadAndAllCpus) {
   EXPECT_EQ(quick_plan().particles, (std::vector<std::size_t>{3000, 24000}));
   for (const auto& plan : {full_plan(), quick_plan()}) {
     EXPECT_EQ(plan.threads.front(), 1u);
-    EXPECT_EQ(plan.threads.back(), usable_cpus());
+    EXPECT_EQ(plan.threads.back(), usable_processors());
     EXPECT_GE(plan.sampling.samples, 7u);
   }
 }
@@ -131,9 +133,9 @@ TEST(Bench, KernelsOnEveryNumberOfThreads) {
     seen.insert({row.kernel, row.threads});
     EXPECT_EQ(row.particles, 200u);
     const auto json = to_json(row);
-    EXPECT_FALSE(has_null(json)) << json;
+    EXPECT_FALSE(json["naive_ns_per_particle_step"].is_null()) << json;
     for (const auto* key : {"kernel", "particles", "threads", "ns_per_particle_step",
-                            "naive_ns_per_particle_step", "speed_up"}) {
+                            "naive_ns_per_particle_step", "speed_up", "bytes_per_particle"}) {
       EXPECT_TRUE(json.contains(key)) << key;
     }
     EXPECT_GT(json["ns_per_particle_step"], 0.0);
@@ -157,7 +159,7 @@ TEST(Bench, ScenesThatLeaveSomethingOutInBothKernels) {
       EXPECT_DOUBLE_EQ(row.share, 1);
     }
     EXPECT_GT(row.share, 0);
-    EXPECT_FALSE(has_null(to_json(row))) << to_json(row);
+    EXPECT_GT(row.stages.total(), 0);
   }
   EXPECT_EQ(seen.size(), rows.size());
 }
@@ -203,6 +205,81 @@ TEST(Bench, EveryMethodHasItsCostOrItsCause) {
       EXPECT_GT(row.iterations, 1);
     }
   }
+}
+
+TEST(Bench, NaiveReferenceIsSparedLargeSystems) {
+  auto plan = tiny_plan();
+  plan.most_naive = 199;
+  for (const auto& row : bench_kernels(plan, 200)) {
+    EXPECT_FALSE(row.has_naive());
+    const auto json = to_json(row);
+    for (const auto* key : {"naive_ns_per_particle_step", "naive_spread", "speed_up"}) {
+      EXPECT_TRUE(json.at(key).is_null()) << key;
+    }
+  }
+}
+
+// A lower bound that no change of the library's storage goes below: positions and motion by cells.
+TEST(Bench, BytesOfMemoryArePlausibleWhereTheAllocatorTellsThem) {
+  for (const auto& row : bench_sizes(3000, {1}, {1, 0, 1, 1e9})) {
+    if (!row.bytes) GTEST_SKIP() << "another allocator";
+    EXPECT_GT(*row.bytes, 64);
+    EXPECT_LT(*row.bytes, 10'000);
+  }
+}
+
+// Tolerances of pairs per particle as above, for 27000 particles; the start is of 27 copies.
+TEST(Bench, LargeStartsAreFluidsOfCopiesInNoOrder) {
+  constexpr std::size_t particles = 216'000;
+  const auto start = bench_start(particles);
+  ASSERT_EQ(start.state.size(), particles);
+  EXPECT_NEAR(particles / start.box.volume(), 3, 1e-9);
+  System system(start.fluid, start.box, start.state, Noise(1, 0));
+  std::size_t pairs = 0;
+  system.for_each_pair([&](const auto&) { ++pairs; });
+  EXPECT_NEAR(static_cast<double>(pairs) / particles, 6.03, 6 * 0.039 / 6.7);
+  const double energy = system.kinetic_energy() + system.internal_energy();
+  EXPECT_NEAR(energy / particles, 1.5 + 61, 1e-3);
+  EXPECT_LT(system.momentum().norm() / particles, 1e-9);
+}
+
+// ---- Scaling
+
+TEST(Scaling, TrafficCountsPartsPairsAndLines) {
+  for (const auto* kernel : {"force-parallel", "sequential"}) {
+    const double none = bytes_per_step(kernel, 0), six = bytes_per_step(kernel, 6);
+    double per_pair = 0;
+    for (const auto& part : step_traffic(kernel)) per_pair += part.per_pair;
+    EXPECT_GT(none, 0);
+    EXPECT_DOUBLE_EQ(six, none + 6 * per_pair);
+  }
+  EXPECT_THROW(step_traffic("none"), std::invalid_argument);
+  EXPECT_GT(triad_bandwidth(1 << 20, 1), 0);
+}
+
+TEST(Scaling, PageTellsWhatLimitsInNumbersOfItsOwn) {
+  ScalingPlan plan;
+  plan.particles = {150, 300};
+  plan.sampling = {2, 0, 1, 1e9};
+  plan.thread_particles = {300};
+  plan.threads = {1, 2};
+  plan.terms_particles = plan.cached_particles = 150;
+  plan.triad_bytes = 1 << 20;
+  nlohmann::json bench = {{"provenance", {{"usable_cpus", 2}, {"command", "a < b"}}},
+                          {"rows", nlohmann::json::array()},
+                          {"scaling", run_scaling(plan)}};
+  for (const auto& row : bench_kernels(tiny_plan(), 200)) bench["rows"].push_back(to_json(row));
+  for (const auto& row : bench_methods(tiny_plan())) bench["methods"].push_back(to_json(row));
+  const auto& scaling = bench["scaling"];
+  EXPECT_EQ(scaling["sizes"].size(), 8u);
+  EXPECT_EQ(scaling["threads"].size(), 4u);
+  EXPECT_EQ(scaling["limits"].size(), 4u);
+  EXPECT_EQ(scaling["terms"].size(), 10u);
+  const std::string page = bench_page(bench);
+  EXPECT_NE(page.find("At N = 150 on one thread"), std::string::npos);
+  EXPECT_NE(page.find("a &lt; b"), std::string::npos);
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+  EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org/2000/svg"));
 }
 
 TEST(Bench, RefusesAFileThatCannotBeWrittenBeforeItMeasures) {

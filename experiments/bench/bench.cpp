@@ -76,7 +76,7 @@ const Omission omissions[] = {
 
 BenchPlan full_plan() {
   BenchPlan plan{{3000, 24000, 192000}, {1}};
-  if (usable_cpus() > 1) plan.threads.push_back(usable_cpus());
+  if (usable_processors() > 1) plan.threads.push_back(usable_processors());
   return plan;
 }
 
@@ -98,7 +98,7 @@ BenchStart equilibrated_start(std::size_t particles) {
       microcanonical_law(fluid, Layout::fluid, particles).energy_at(fluid.parameters().temperature);
   draw_microcanonical(fluid, Layout::fluid, energy, noise, state);
   System system(fluid, box, state, noise);
-  system.set_threads(usable_cpus());
+  system.set_threads(usable_processors());
   const auto integrator = bench_kinds[1].library().make({});
   // Particles at random repel each other and heat up: fresh velocities and energies, now and then,
   // keep the temperature while positions become a fluid's.
@@ -124,8 +124,8 @@ int copies_of_a_start(std::size_t particles) {
   return 1;
 }
 
-/// Copies of a fluid side by side, with velocities and energies of their own, shuffled: a particle's
-/// place in storage tells nothing of its position, as after a long run.
+/// Copies of a fluid side by side, with velocities and energies of their own, shuffled: a
+/// particle's place in storage tells nothing of its position, as after a long run.
 BenchStart repeated(const BenchStart& part, int copies) {
   BenchStart whole{part.fluid, {part.box.lengths * copies}, {}};
   auto& positions = whole.state.position;
@@ -200,7 +200,8 @@ std::vector<SceneRow> bench_scenes(const BenchPlan& plan) {
     for (const auto& omission : omissions) {
       FluidParameters fluid = start.fluid.parameters();
       omission.leave_out(fluid);
-      runs.push_back(std::make_unique<BenchRun>(kernel.library(), Fluid(fluid), start, omission.frozen));
+      runs.push_back(
+          std::make_unique<BenchRun>(kernel.library(), Fluid(fluid), start, omission.frozen));
       runs.back()->system().set_threads(1);
       rows.push_back({omission.name, kernel.name, plan.table_particles});
     }

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/bench/machine.hpp"
 #include "experiments/bench/sampling.hpp"
+#include "experiments/processors.hpp"
 #include "integrators/integrator.hpp"
 
 namespace driftless {
@@ -55,9 +55,9 @@ std::vector<KernelRow> bench_kernels(const BenchPlan& plan, std::size_t particle
 struct SceneRow {
   std::string scene, kernel;
   std::size_t particles;
-  Spread nanoseconds = {};   ///< per particle and step
-  double share = 1;          ///< of the full fluid's
-  StageSeconds stages = {};  ///< per particle and step
+  Spread nanoseconds = {};           ///< per particle and step
+  double share = 1;                  ///< of the full fluid's
+  StageSeconds stages = {};          ///< per particle and step
   std::optional<double> bytes = {};  ///< of memory per particle beyond the State
 };
 std::vector<SceneRow> bench_scenes(const BenchPlan& plan);

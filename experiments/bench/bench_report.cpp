@@ -185,10 +185,9 @@ void run_bench(const BenchArguments& arguments) {
   if (!arguments.particles.empty()) plan.particles = arguments.particles;
   const unsigned most_threads = *std::max_element(plan.threads.begin(), plan.threads.end());
   auto origin = provenance(most_threads, 1, command(arguments));
-  origin["instructions"] = instruction_set();
-  origin["usable_cpus"] = usable_cpus();
+  origin["usable_cpus"] = usable_processors();
   print_line("{}\n{} usable CPUs, vector instructions {}\n", origin["cpu"].get<std::string>(),
-             usable_cpus(), instruction_set());
+             usable_processors(), origin["instructions"].get<std::string>());
   print_line(
       "Soft fluid with friction and conduction, density 3, time step 0.01. Medians and quartiles\n"
       "of at most {} interleaved samples, by the clock on the wall. Force-parallel is\n"

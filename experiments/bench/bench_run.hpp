@@ -48,7 +48,7 @@ class BenchRun {
 };
 
 /// Seconds of each stage per particle and step, of some more steps: looking at the clock takes
-/// time. Of a run on one thread.
+/// time. Of a run on one thread; of a few looks the one that other programs disturbed least.
 StageSeconds stages_of(BenchRun& run);
 
 /// Ends a run; the memory it held per particle, beyond the State itself. None where the allocator

@@ -43,8 +43,8 @@ ScalingPlan scaling_plan(bool quick) {
     plan.thread_particles.push_back(192'000);
   }
   plan.sampling = {.samples = quick ? 5U : 9U, .seconds = 0.05, .least_steps = 1, .most = 3};
-  for (unsigned count = 1; count < usable_cpus(); count *= 2) plan.threads.push_back(count);
-  plan.threads.push_back(usable_cpus());
+  for (unsigned count = 1; count < usable_processors(); count *= 2) plan.threads.push_back(count);
+  plan.threads.push_back(usable_processors());
   plan.triad_bytes = quick ? beyond_the_cache() / 2 : beyond_the_cache();
   return plan;
 }

@@ -47,8 +47,8 @@ std::vector<SceneRow> print_terms(const ScalingPlan& plan) {
 }
 
 std::vector<LimitRow> print_limits(const ScalingPlan& plan, const std::vector<KernelRow>& sizes) {
-  print_line("\nLimits\n{:<14} {:>7}  {:>14}  {:>26}  {:>26}\n", "kernel", "threads",
-             "triad, GB/s", "noise and arithmetic, ns", "memory beyond caches, ns");
+  print_line("\nLimits\n{:<14} {:>7}  {:>14}  {:>26}  {:>26}\n", "kernel", "threads", "triad, GB/s",
+             "noise and arithmetic, ns", "memory beyond caches, ns");
   const auto rows = bench_limits(plan, sizes);
   for (const auto& row : rows) {
     print_line("{:<14} {:>7}  {:>14.1f}  {:>26.1f}  {:>26.1f}\n", row.kernel, row.threads,
@@ -86,8 +86,7 @@ nlohmann::json run_scaling(const ScalingPlan& plan) {
   if (plan.threads.back() > 1) ends.push_back(plan.threads.back());
   const auto sizes =
       print_sizes(plan.particles, ends, plan.sampling, "Sizes (ns of the stages on one thread)");
-  const auto threads =
-      print_sizes(plan.thread_particles, plan.threads, plan.sampling, "Threads");
+  const auto threads = print_sizes(plan.thread_particles, plan.threads, plan.sampling, "Threads");
   const auto terms = print_terms(plan);
   const auto limits = print_limits(plan, sizes);
   return {{"sizes", all_to_json(sizes)},

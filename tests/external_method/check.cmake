@@ -2,7 +2,7 @@
 # it, lists it, runs a study of it, and holds it to the suites. Then the same once more, compiled for
 # the processor at hand, and so perhaps for other instructions than the library.
 #
-# cmake -DBUILD=... -DSCRATCH=... -DCOMPILER=... -DINVARIANTS=... -P check.cmake
+# cmake -DBUILD=... -DSCRATCH=... -DCOMPILER=... -DINVARIANTS=... -DGENERATOR=... -P check.cmake
 set(example ${CMAKE_CURRENT_LIST_DIR})
 set(prefix ${SCRATCH}/installed)
 set(program ${prefix}/bin/driftless)
@@ -29,7 +29,7 @@ endfunction()
 
 # compile(FOLDER FLAGS): leaves the compiled example in `module`.
 function(compile folder flags)
-  call(${CMAKE_COMMAND} -S ${example} -B ${folder} -DCMAKE_PREFIX_PATH=${prefix}
+  call(${CMAKE_COMMAND} -G ${GENERATOR} -S ${example} -B ${folder} -DCMAKE_PREFIX_PATH=${prefix}
     -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${warnings} ${flags}")
   call(${CMAKE_COMMAND} --build ${folder})
   set(module ${folder}/my_euler.so PARENT_SCOPE)
