@@ -291,8 +291,10 @@ PairBlocks::PairBlocks(const CellGrid& cells, double range, unsigned threads)
       }
     }
     if (alike.empty()) continue;
-    add_blocks(alike, std::min(std::max<std::size_t>(1, particles_a_block / a_tile),
-                               std::max<std::size_t>(1, alike.size() / threads)));
+    // Enough blocks for threads to share them evenly.
+    const std::size_t for_all = threads > 1 ? alike.size() / (4 * threads) : alike.size();
+    const std::size_t for_cache = particles_a_block / a_tile;
+    add_blocks(alike, std::max<std::size_t>(1, std::min(for_all, for_cache)));
   }
 }
 
