@@ -139,7 +139,7 @@ class System {
   /// Whether a particle's velocity and internal energy are those of a particle.
   bool is_sound(std::size_t place) const {
     const double u = state_.internal_energy[place];
-    return (u > 0) & (u < std::numeric_limits<double>::infinity()) &
+    return u > 0 && u < std::numeric_limits<double>::infinity() &&
            std::isfinite(state_.velocity[place].squaredNorm());
   }
   void check() const;
