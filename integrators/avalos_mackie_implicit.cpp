@@ -40,8 +40,7 @@ class AvalosMackieImplicit : public Integrator {
     const V kick = sqrt(fluid.friction(end).noise_squared * dt) * start.noise;
     const V dissipated = 0.5 * fluid.friction(start).friction * start.v * start.v * dt;
     if (symmetric_work_) {
-      const V work = 0.25 * kick * (start.v + end.v);
-      return {V(0), dissipated - work, dissipated - work};
+      return midpoint_work(kick, start, end) += Transfer<V>{V(0), dissipated, dissipated};
     }
     const V v_i_to_new_j = start.v - end.dv_j;  // (v_i - v_j').e
     const V v_new_i_to_j = start.v + end.dv_i;  // (v_i' - v_j).e

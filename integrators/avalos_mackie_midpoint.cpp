@@ -26,10 +26,7 @@ class AvalosMackieMidpoint : public Integrator {
         [&](const auto& start, const auto& end, const auto& momentum) {
           auto total = end_point_conduction(fluid, start, end, dt);
           const auto f = momentum - fluid.repulsive_force(start.r) * dt;
-          const auto work = 0.25 * f * (start.v + end.v);
-          total.energy_i -= work;
-          total.energy_j -= work;
-          return total;
+          return total += midpoint_work(f, start, end);
         });
   }
 

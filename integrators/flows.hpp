@@ -31,6 +31,14 @@ Transfer<V> euler_conduction(const Fluid& fluid, const Pair<V>& pair, double dt)
   return {V(0), heat, -heat};
 }
 
+/// What an impulse f of a pair takes from its internal energies if its work is that at the midpoint
+/// velocity, (v + v')/2: each pays half.
+template <class V>
+Transfer<V> midpoint_work(const V& f, const Pair<V>& start, const TrialPair<V>& end) {
+  const V work = 0.25 * f * (start.v + end.v);
+  return {V(0), -work, -work};
+}
+
 /// The transfer where a condition holds, otherwise none.
 template <class V, class Condition>
 Transfer<V> only_where(const Condition& condition, const Transfer<V>& transfer) {

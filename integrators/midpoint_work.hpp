@@ -37,12 +37,6 @@ class MidpointWork {
   }
 
  private:
-  template <class V>
-  static Transfer<V> midpoint_work(const V& f, const Pair<V>& start, const TrialPair<V>& end) {
-    const V work = 0.25 * f * (start.v + end.v);
-    return {V(0), -work, -work};
-  }
-
   Motion trial_;
   Exchange exchange_;
 };
