@@ -6,14 +6,13 @@
 #include <atomic>
 #include <cmath>
 #include <memory>
-#include <mutex>
 #include <set>
-#include <thread>
 
 #include "experiments/answers.hpp"
 #include "experiments/cell.hpp"
 #include "experiments/files.hpp"
 #include "experiments/interrupt.hpp"
+#include "experiments/parallel.hpp"
 #include "experiments/processors.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
@@ -27,29 +26,6 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-/// Runs work(index) for every index on so many threads; the first exception is thrown again.
-template <class Work>
-void parallel(std::size_t count, unsigned threads, Work&& work) {
-  std::atomic<std::size_t> next = 0;
-  std::exception_ptr failure;
-  std::mutex failure_mutex;
-  {
-    std::vector<std::jthread> pool;
-    for (unsigned n = 0; n < std::min<std::size_t>(threads, count); ++n) {
-      pool.emplace_back([&] {
-        try {
-          for (auto index = next++; index < count; index = next++) work(index);
-        } catch (...) {
-          const std::lock_guard lock(failure_mutex);
-          if (!failure) failure = std::current_exception();
-          next = count;
-        }
-      });
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
-}
 
 struct Cell {
   Cell(const PreparedScene& scene, const MethodChoice& method, double step, fs::path kept)
@@ -231,7 +207,7 @@ void Campaign::run_cells() {
   const auto finished = count([](const auto& cell) { return !cell->record.is_null(); });
   finished_ = finished - refused;
   planned_ = cells_.size() - refused;
-  Progress progress(cells_.size() - refused, cost, options_.quiet);
+  Progress progress("cells", cells_.size() - refused, cost, options_.quiet);
   progress.cells_resumed(finished - refused);
   // Whole runs side by side come first, as they need not wait for each other.
   const auto at_once = std::clamp<std::size_t>(runs.size(), 1, threads_);

@@ -6,6 +6,7 @@
 
 #include "experiments/bench/bench.hpp"
 #include "experiments/campaign.hpp"
+#include "experiments/judge/judge.hpp"
 #include "experiments/observables.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/recommend.hpp"
@@ -25,6 +26,14 @@ struct Arguments {
   unsigned threads = 0;
   std::vector<std::string> modules;
   bool json = false, quiet = false;
+};
+
+struct JudgeArguments {
+  std::vector<std::string> methods, examinations;
+  std::string directory, depth = "quick";
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+  bool quiet = false;
 };
 
 std::string option_text(const OptionValue& value) {
@@ -123,6 +132,26 @@ void run(const Arguments& arguments) {
                directory);
 }
 
+void run_judge(const JudgeArguments& arguments) {
+  const auto candidates = judge::read_candidates(arguments.methods);
+  const auto examinations = judge::read_examinations(arguments.examinations);
+  const fs::path directory = arguments.directory.empty()
+                                 ? fs::path("driftless-results") / "judgement"
+                                 : fs::path(arguments.directory);
+  std::string command = "driftless";
+  for (const auto& module : loaded_modules()) command += " --methods " + module.string();
+  command += fmt::format(" judge {} --depth {} --seed {} -o {}", fmt::join(arguments.methods, " "),
+                         arguments.depth, arguments.seed, directory.string());
+  for (const auto& name : arguments.examinations) command += " --examination " + name;
+  const auto depth = arguments.depth == "full" ? judge::Depth::full : judge::Depth::quick;
+  const auto judgement = judge::run_judgement(
+      candidates, examinations,
+      {directory, {depth, arguments.seed}, arguments.threads, command, arguments.quiet});
+  const auto file = judge::write_judgement(judgement, directory);
+  fmt::print("{}\nJudgement: {}\n", judge::judgement_summary(judgement),
+             fs::absolute(file).lexically_normal().string());
+}
+
 void report(const Arguments& arguments) {
   const fs::path given = arguments.result;
   const auto result = read_result(given);
@@ -188,6 +217,27 @@ int main(int argc, char** argv) {
                                 "method within this cost");
   recommend_command->add_option("--scene", question.scene, "this scene alone");
   recommend_command->callback([&] { fmt::print("{}", recommend(question)); });
+
+  JudgeArguments judged;
+  auto* judge_command =
+      app.add_subcommand("judge", "put methods to every examination; finished parts are kept");
+  judge_command
+      ->add_option("method", judged.methods,
+                   "names of methods, NAME:option=value,option=value, or all")
+      ->required();
+  judge_command
+      ->add_option("--depth", judged.depth,
+                   "quick: minutes on 4 cores for a few methods; full: hours for all")
+      ->check(CLI::IsMember({"quick", "full"}));
+  judge_command->add_option("--examination", judged.examinations,
+                            "this examination alone (may be given several times)");
+  judge_command->add_option("-o,--output", judged.directory,
+                            "folder of the judgement (default: driftless-results/judgement)");
+  judge_command->add_option("--seed", judged.seed, "of all noise (default 1)");
+  judge_command->add_option("-t,--threads", judged.threads, "threads (default: all)")
+      ->check(CLI::Range(1U, 4096U));
+  judge_command->add_flag("-q,--quiet", judged.quiet, "no progress");
+  judge_command->callback([&] { run_judge(judged); });
 
   app.add_subcommand("methods", "list the integrators")->callback(print_methods);
   auto* scenes = app.add_subcommand("scenes", "list the scenes and every key they set");

@@ -7,10 +7,11 @@
 
 namespace driftless {
 
-Progress::Progress(std::size_t cells, double predicted_cost, bool quiet)
-    : quiet_(quiet),
+Progress::Progress(std::string things, std::size_t count, double predicted_cost, bool quiet)
+    : things_(std::move(things)),
+      quiet_(quiet),
       terminal_(isatty(STDERR_FILENO) != 0),
-      cells_(cells),
+      cells_(count),
       cost_(predicted_cost),
       start_(std::chrono::steady_clock::now()),
       shown_(start_) {}
@@ -31,8 +32,8 @@ void Progress::renew(bool always) {
   const auto now = std::chrono::steady_clock::now();
   if (!always && now - shown_ < std::chrono::milliseconds(250)) return;
   shown_ = now;
-  fmt::print(stderr, "\r\033[Kcells {} of {} done, {} runs under way, {} unstable{}", done_, cells_,
-             running_, unstable_, time_left());
+  fmt::print(stderr, "\r\033[K{} {} of {} done, {} runs under way{}{}", things_, done_, cells_,
+             running_, unstable_ == 0 ? "" : fmt::format(", {} unstable", unstable_), time_left());
   std::fflush(stderr);
 }
 
@@ -62,7 +63,7 @@ void Progress::cell_finished(const std::string& name, const std::string& status)
 void Progress::cells_resumed(std::size_t cells) {
   if (cells == 0) return;
   done_ += cells;
-  say(fmt::format("{} of {} cells are finished already", cells, cells_));
+  say(fmt::format("{} of {} {} are finished already", cells, cells_, things_));
 }
 
 void Progress::say(const std::string& line) {

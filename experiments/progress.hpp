@@ -6,11 +6,12 @@
 
 namespace driftless {
 
-/// Tells on standard error how far a study is: one line that renews itself on a terminal, a line
+/// Tells on standard error how far a run is: one line that renews itself on a terminal, a line
 /// per finished cell elsewhere. Time left follows from predicted costs. Safe to call from threads.
 class Progress {
  public:
-  Progress(std::size_t cells, double predicted_cost, bool quiet);
+  /// `things` is what is counted: "cells".
+  Progress(std::string things, std::size_t count, double predicted_cost, bool quiet);
   ~Progress();
 
   void replica_started();
@@ -27,6 +28,7 @@ class Progress {
   std::string time_left() const;
 
   std::mutex mutex_;
+  std::string things_;
   bool quiet_, terminal_;
   std::size_t cells_, done_ = 0, running_ = 0, unstable_ = 0;
   double cost_, cost_done_ = 0;

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "experiments/judge/examination.hpp"
+
+/// Every examination, a line each: `name` is defined in name.cpp.
+#define DRIFTLESS_EXAMINATIONS(EXAMINATION)
+
+namespace driftless::judge {
+
+#define DRIFTLESS_DECLARE(name) extern const Examination name;
+DRIFTLESS_EXAMINATIONS(DRIFTLESS_DECLARE)
+#undef DRIFTLESS_DECLARE
+
+}  // namespace driftless::judge

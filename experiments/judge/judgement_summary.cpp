@@ -1,0 +1,62 @@
+#include <fmt/format.h>
+
+#include "experiments/files.hpp"
+#include "experiments/judge/judge.hpp"
+
+namespace driftless::judge {
+namespace {
+
+using nlohmann::json;
+
+std::string verdict_table(const json& judgement) {
+  std::string head = "| method |", rule = "| --- |";
+  for (const auto& examination : judgement["examinations"]) {
+    head += fmt::format(" {} |", examination["name"].get<std::string>());
+    rule += " --- |";
+  }
+  std::string text = head + "\n" + rule + "\n";
+  for (const auto& method : judgement["methods"]) {
+    text += fmt::format("| {} |", method["name"].get<std::string>());
+    for (const auto& examination : judgement["examinations"]) {
+      const auto& conclusion = method["conclusions"][examination["name"].get<std::string>()];
+      text += fmt::format(" {} |", conclusion["verdict"].get<std::string>());
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+/// What fails, one line each; where the method claims the contrary it is said.
+std::string failures(const json& judgement) {
+  std::string text;
+  for (const auto& method : judgement["methods"]) {
+    for (const auto& examination : judgement["examinations"]) {
+      const auto name = examination["name"].get<std::string>();
+      for (const auto& finding : method["conclusions"][name]["findings"]) {
+        if (finding["verdict"] != "fails") continue;
+        text += fmt::format("- {}, {}: {}{}\n", method["name"].get<std::string>(), name,
+                            finding["sentence"].get<std::string>(),
+                            finding.value("claimed", false) ? " (claimed otherwise)" : "");
+      }
+    }
+  }
+  return text.empty() ? "Nothing fails.\n" : text;
+}
+
+}  // namespace
+
+std::string judgement_summary(const json& judgement) {
+  return fmt::format("# Judgement ({})\n\n{}\n## What fails\n\n{}",
+                     judgement["depth"].get<std::string>(), verdict_table(judgement),
+                     failures(judgement));
+}
+
+std::filesystem::path write_judgement(const json& judgement,
+                                      const std::filesystem::path& directory) {
+  const auto file = directory / "judgement.json";
+  write_atomically(file, judgement.dump(1) + "\n");
+  write_atomically(directory / "summary.md", judgement_summary(judgement));
+  return file;
+}
+
+}  // namespace driftless::judge
