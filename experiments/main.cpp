@@ -147,9 +147,9 @@ void run_judge(const JudgeArguments& arguments) {
   const auto judgement = judge::run_judgement(
       candidates, examinations,
       {directory, {depth, arguments.seed}, arguments.threads, command, arguments.quiet});
-  const auto file = judge::write_judgement(judgement, directory);
-  fmt::print("{}\nJudgement: {}\n", judge::judgement_summary(judgement),
-             fs::absolute(file).lexically_normal().string());
+  const auto page = judge::write_judgement(judgement, directory);
+  fmt::print("{}\nPage: {}\n", judge::judgement_summary(judgement),
+             fs::absolute(page).lexically_normal().string());
 }
 
 void report(const Arguments& arguments) {

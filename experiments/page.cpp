@@ -29,14 +29,20 @@ void append(std::string& page, std::span<const std::string_view> pieces) {
   for (const std::string_view piece : pieces) page += piece;
 }
 
+std::string render(const PageTemplate& page, const nlohmann::json& result) {
+  std::string text;
+  append(text, page.before);
+  text += inline_json(result);
+  append(text, page.after);
+  return text;
+}
+
 }  // namespace
 
-std::string render_page(const nlohmann::json& result) {
-  std::string page;
-  append(page, page_before_result());
-  page += inline_json(result);
-  append(page, page_after_result());
-  return page;
+std::string render_page(const nlohmann::json& result) { return render(result_page(), result); }
+
+std::string render_judgement_page(const nlohmann::json& judgement) {
+  return render(judgement_page(), judgement);
 }
 
 }  // namespace driftless

@@ -8,5 +8,7 @@ namespace driftless {
 /// The web page of a result (format "driftless-result/1"): one self-contained HTML text that opens
 /// without a network. What the page shows is worked out from the result when it is opened.
 std::string render_page(const nlohmann::json& result);
+/// The same of a judgement (format "driftless-judgement/1").
+std::string render_judgement_page(const nlohmann::json& judgement);
 
 }  // namespace driftless

@@ -11,26 +11,14 @@
 #include "experiments/report.hpp"
 #include "experiments/text_file.hpp"
 #include "tests/json_schema.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace driftless {
 namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-/// A folder that goes with the test.
-class Folder {
- public:
-  explicit Folder(const std::string& name)
-      : path_(fs::path(testing::TempDir()) / ("driftless-campaign-" + name)) {
-    fs::remove_all(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
+using Folder = testing::ScratchFolder;
 
 Study small_study(const std::string& changes = "{}") {
   json study = {{"format", "driftless-study/1"},
@@ -69,14 +57,14 @@ const json& cell_of(const json& result, const std::string& method, double time_s
 }
 
 TEST(Campaign, GivesTheSameBitsOnOneTwoAndFourThreads) {
-  Folder one("one"), two("two"), four("four");
+  Folder one("campaign-one"), two("campaign-two"), four("campaign-four");
   const auto expected = bits(run(small_study(), one.path(), 1));
   EXPECT_EQ(bits(run(small_study(), two.path(), 2)), expected);
   EXPECT_EQ(bits(run(small_study(), four.path(), 4)), expected);
 }
 
 TEST(Campaign, AnotherSeedGivesOtherNumbers) {
-  Folder one("seed-one"), two("seed-two");
+  Folder one("campaign-seed-one"), two("campaign-seed-two");
   const auto first = run(small_study(), one.path());
   const auto second = run(small_study(R"({"seed": 8})"), two.path());
   EXPECT_NE(cell_of(first, "shardlow-s1", 0.01)["observables"].dump(),
@@ -84,7 +72,7 @@ TEST(Campaign, AnotherSeedGivesOtherNumbers) {
 }
 
 TEST(Campaign, TakesFinishedCellsUpAndRunsTheOthers) {
-  Folder folder("resume");
+  Folder folder("campaign-resume");
   const auto whole = bits(run(small_study(), folder.path()));
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder.path() / "cells")) {
@@ -108,22 +96,22 @@ TEST(Campaign, TakesFinishedCellsUpAndRunsTheOthers) {
 }
 
 TEST(Campaign, AChangedStudyTakesNothingUp) {
-  Folder folder("changed");
+  Folder folder("campaign-changed");
   run(small_study(), folder.path());
   const auto changed = run(small_study(R"({"scene": {"temperature": 1.2}})"), folder.path());
-  Folder fresh("changed-fresh");
+  Folder fresh("campaign-changed-fresh");
   EXPECT_EQ(bits(changed),
             bits(run(small_study(R"({"scene": {"temperature": 1.2}})"), fresh.path())));
 }
 
 TEST(Campaign, ResultFollowsThePublishedSchema) {
-  Folder folder("schema");
+  Folder folder("campaign-schema");
   const auto result = run(small_study(R"({"time_steps": [0.01, 0.1]})"), folder.path());
   EXPECT_EQ(schema_errors(result_schema(), result), std::vector<std::string>{});
 }
 
 TEST(Campaign, AnUnsuitedMethodIsNotApplicableWithAReason) {
-  Folder folder("refused");
+  Folder folder("campaign-refused");
   const auto result = run(small_study(), folder.path());
   const auto& cell = cell_of(result, "espanol", 0.01);
   EXPECT_EQ(cell["status"], "not_applicable");
@@ -132,7 +120,7 @@ TEST(Campaign, AnUnsuitedMethodIsNotApplicableWithAReason) {
 }
 
 TEST(Campaign, AFailureStopsTheCellWithCauseStepAndTime) {
-  Folder folder("failure");
+  Folder folder("campaign-failure");
   // A hundred times the stable step: internal energies turn negative at once.
   const auto result =
       run(small_study(R"({"time_steps": [1.0], "duration": {"equilibrate": 1, "measure": 20,
@@ -150,7 +138,7 @@ TEST(Campaign, AFailureStopsTheCellWithCauseStepAndTime) {
 
 TEST(Campaign, AnEnergyThatDoublesIsAFailureThoughEveryNumberIsFinite) {
   // The Euler move in a soft fluid heats it by some 20 kT a particle and unit time at this step.
-  Folder folder("runaway");
+  Folder folder("campaign-runaway");
   const auto result = run(small_study(R"({"scene": {"preset": "soft-fluid", "particles": 81},
                       "methods": ["avalos-mackie-midpoint", "shardlow-s1"], "time_steps": [0.04],
                       "duration": {"equilibrate": 4, "measure": 8, "sample_every": 0.4}})"),
@@ -164,7 +152,7 @@ TEST(Campaign, AnEnergyThatDoublesIsAFailureThoughEveryNumberIsFinite) {
 TEST(Campaign, ObservablesOfTheInternalEnergyNeedTimeToBeResolved) {
   // Without conduction u relaxes in about 250 time units: a run of 40 knows nothing of it. The
   // kinetic energy takes 1.9, and then 50 make a measurement.
-  Folder folder("unresolved");
+  Folder folder("campaign-unresolved");
   const auto result = run(small_study(R"({"scene": {"heat_form": "none"}, "time_steps": [0.1],
                           "duration": {"equilibrate": 10, "measure": 40}})"),
                           folder.path());
@@ -184,7 +172,7 @@ TEST(Campaign, ObservablesOfTheInternalEnergyNeedTimeToBeResolved) {
 }
 
 TEST(Campaign, ObservablesOfTheKineticEnergyNeedTimeToo) {
-  Folder folder("kinetic");
+  Folder folder("campaign-kinetic");
   // 1 and 4 time units, u takes 0.09. One replica: of more the last, started off equilibrium, may
   // well disagree so early.
   const auto result = run(small_study(R"({"replicas": 1})"), folder.path());
@@ -198,7 +186,7 @@ TEST(Campaign, ObservablesOfTheKineticEnergyNeedTimeToo) {
 
 TEST(Campaign, AnAnswerIsAMethodWhoseLimitIsTheModel) {
   // Without the noise-induced friction the limit is another, which only shows at small capacities.
-  Folder folder("published");
+  Folder folder("campaign-published");
   const auto result = run(small_study(R"({"scene": {"particles": 100},
                       "methods": [{"name": "shardlow-s2", "options": {"as_published": true}},
                                   "shardlow-s1"], "time_steps": [0.02],
@@ -209,7 +197,7 @@ TEST(Campaign, AnAnswerIsAMethodWhoseLimitIsTheModel) {
   for (const auto& answer : result["answers"]) {
     EXPECT_TRUE(answer["method"].is_null() || answer["method"] == "shardlow-s1") << answer;
   }
-  Folder noise("published-noise");
+  Folder noise("campaign-published-noise");
   const auto other =
       run(small_study(R"({"scene": {"friction_closure": "noise"}, "time_steps": [0.02],
                       "methods": [{"name": "shardlow-s2", "options": {"as_published": true}},
@@ -221,7 +209,7 @@ TEST(Campaign, AnAnswerIsAMethodWhoseLimitIsTheModel) {
 
 TEST(Campaign, NothingIsExactWhereNoLawIsKnown) {
   // A soft fluid from rest has an energy of its own; a solid with friction keeps momenta.
-  Folder rest("rest"), solid("solid");
+  Folder rest("campaign-rest"), solid("campaign-solid");
   const auto from_rest = run(small_study(R"({"scene": {"preset": "soft-fluid", "particles": 81,
       "initial_state": "rest"}, "methods": ["shardlow-s1"], "time_steps": [0.02]})"),
                              rest.path());
@@ -241,7 +229,7 @@ TEST(Campaign, AReplicaStillOffEquilibriumIsSeen) {
   // With little friction the kinetic energy, half of equilibrium's at the start, needs some 200
   // time units; u alone, with its predicted 0.09, would pass for resolved. The others disagree, so
   // nothing of u is.
-  Folder folder("off");
+  Folder folder("campaign-off");
   const auto result = run(small_study(R"({"scene": {"particles": 400, "friction": 0.01},
                       "methods": ["shardlow-s2"], "time_steps": [0.02], "replicas": 4,
                       "duration": {"equilibrate": 0.6, "measure": 2, "sample_every": 0.04}})"),
@@ -251,7 +239,7 @@ TEST(Campaign, AReplicaStillOffEquilibriumIsSeen) {
   EXPECT_FALSE(cell["off_equilibrium"]["agrees"]) << cell["off_equilibrium"];
   EXPECT_EQ(cell["observables"]["internal_energy_variance"]["status"], "not_resolved");
   // Equilibrated for long, it agrees (false alarm below 1e-5 at 4.5 standard errors; fixed seed).
-  Folder settled("off-settled");
+  Folder settled("campaign-off-settled");
   const auto long_run = run(small_study(R"({"scene": {"particles": 100}, "methods": ["shardlow-s2"],
                       "time_steps": [0.01], "replicas": 4,
                       "duration": {"equilibrate": 10, "measure": 20, "sample_every": 0.1}})"),
@@ -260,7 +248,7 @@ TEST(Campaign, AReplicaStillOffEquilibriumIsSeen) {
 }
 
 TEST(Campaign, ExactMethodKeepsEnergyAndEveryMethodMomentum) {
-  Folder folder("conserved");
+  Folder folder("campaign-conserved");
   const auto result = run(small_study(), folder.path());
   const auto& exact = cell_of(result, "shardlow-s1", 0.02)["observables"];
   const auto& drifting = cell_of(result, "averaged-drift", 0.02)["observables"];
@@ -272,7 +260,7 @@ TEST(Campaign, ExactMethodKeepsEnergyAndEveryMethodMomentum) {
 }
 
 TEST(Campaign, CostHoldsCountsThatNoMachineChanges) {
-  Folder folder("cost");
+  Folder folder("campaign-cost");
   const auto result = run(small_study(), folder.path());
   const auto& explicit_cost = cell_of(result, "averaged-drift", 0.01)["cost"];
   const auto& implicit_cost = cell_of(result, "avalos-mackie-midpoint", 0.01)["cost"];
@@ -285,14 +273,14 @@ TEST(Campaign, CostHoldsCountsThatNoMachineChanges) {
 }
 
 TEST(Campaign, AnUnwritableFolderIsAnInputError) {
-  Folder folder("unwritable");
+  Folder folder("campaign-unwritable");
   fs::create_directories(folder.path());
   std::ofstream(folder.path() / "file") << "in the way";
   EXPECT_THROW(run(small_study(), folder.path() / "file" / "below"), InputError);
 }
 
 TEST(Report, SummaryNamesTheAnswerAndTheFailures) {
-  Folder folder("summary");
+  Folder folder("campaign-summary");
   const auto result = run(small_study(R"({"time_steps": [0.01, 0.5],
       "duration": {"equilibrate": 1, "measure": 20, "sample_every": 0.5}})"),
                           folder.path());

@@ -36,7 +36,8 @@ nlohmann::json run_judgement(const std::vector<Candidate>& candidates,
 /// fails.
 std::string judgement_summary(const nlohmann::json& judgement);
 
-/// Writes judgement.json and summary.md into a folder; returns the path of the JSON file.
+/// Writes judgement.json, index.html (the page) and summary.md into a folder; returns the page's
+/// path.
 /// Throws InputError if they cannot be written.
 std::filesystem::path write_judgement(const nlohmann::json& judgement,
                                       const std::filesystem::path& directory);

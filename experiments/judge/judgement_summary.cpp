@@ -2,6 +2,7 @@
 
 #include "experiments/files.hpp"
 #include "experiments/judge/judge.hpp"
+#include "experiments/page.hpp"
 
 namespace driftless::judge {
 namespace {
@@ -53,10 +54,11 @@ std::string judgement_summary(const json& judgement) {
 
 std::filesystem::path write_judgement(const json& judgement,
                                       const std::filesystem::path& directory) {
-  const auto file = directory / "judgement.json";
-  write_atomically(file, judgement.dump(1) + "\n");
+  const auto page = directory / "index.html";
+  write_atomically(directory / "judgement.json", judgement.dump(1) + "\n");
   write_atomically(directory / "summary.md", judgement_summary(judgement));
-  return file;
+  write_atomically(page, render_judgement_page(judgement));
+  return page;
 }
 
 }  // namespace driftless::judge

@@ -31,7 +31,7 @@ const config = {
 };
 
 const views = new Map();
-const drawn = new Map();
+const drawn = new WeakMap();  // by container: a new one of the same id is empty
 const turns = new Map();
 
 // spec null says there is nothing to draw; `description` then tells the reader why.
@@ -43,11 +43,12 @@ export function draw(id, spec, description) {
 
 async function draw_now(id, spec, description) {
   const container = document.getElementById(id);
+  if (!container) return; // the page has moved on
   container.setAttribute('role', 'figure');
   container.setAttribute('aria-label', description);
   const wanted = JSON.stringify([spec, description]);
-  if (drawn.get(id) === wanted) return;
-  drawn.set(id, wanted);
+  if (drawn.get(container) === wanted) return;
+  drawn.set(container, wanted);
   views.get(id)?.finalize();
   views.delete(id);
   if (!spec) {

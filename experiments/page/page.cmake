@@ -1,4 +1,4 @@
-# Bundles the page's template. After include(page/page.cmake) in experiments/CMakeLists.txt the variable
+# Bundles the pages' templates. After include(page/page.cmake) in experiments/CMakeLists.txt the variable
 # DRIFTLESS_PAGE_TEMPLATE names the generated source that experiments/page.cpp needs beside it.
 find_program(NODE_EXECUTABLE NAMES node nodejs REQUIRED)
 set(page_folder "${PROJECT_SOURCE_DIR}/experiments/page")
@@ -11,8 +11,8 @@ file(GLOB_RECURSE page_sources CONFIGURE_DEPENDS "${page_folder}/*.js" "${page_f
 set(page_output "${CMAKE_CURRENT_BINARY_DIR}/page")
 set(DRIFTLESS_PAGE_TEMPLATE "${page_output}/page_template.cpp")
 add_custom_command(
-  OUTPUT "${DRIFTLESS_PAGE_TEMPLATE}" "${page_output}/page_template.html"
+  OUTPUT "${DRIFTLESS_PAGE_TEMPLATE}" "${page_output}/result.html" "${page_output}/judgement.html"
   COMMAND "${NODE_EXECUTABLE}" "${page_folder}/bundle.mjs" "${page_output}"
   DEPENDS ${page_sources} "${page_folder}/bundle.mjs" "${PROJECT_SOURCE_DIR}/package.json" "${page_modules}"
-  COMMENT "Bundling the result page"
+  COMMENT "Bundling the pages"
   VERBATIM)

@@ -1,5 +1,5 @@
-// Writes the page of a result: write_page RESULT.json PAGE.html. The browser test's way to pages of
-// results that no study would give.
+// Writes the page of a result or a judgement: write_page RESULT.json PAGE.html. The browser tests'
+// way to pages of results that no study would give.
 
 #include <exception>
 #include <fstream>
@@ -16,7 +16,8 @@ int main(int argument_count, char** arguments) try {
   std::ifstream input(arguments[1]);
   const auto result = nlohmann::json::parse(input);
   std::ofstream output(arguments[2], std::ios::binary);
-  output << driftless::render_page(result);
+  const bool judgement = result.value("format", "") == "driftless-judgement/1";
+  output << (judgement ? driftless::render_judgement_page(result) : driftless::render_page(result));
   output.close();
   return output ? 0 : 1;
 } catch (const std::exception& error) {
