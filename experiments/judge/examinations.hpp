@@ -3,7 +3,7 @@
 #include "experiments/judge/examination.hpp"
 
 /// Every examination, a line each: `name` is defined in name.cpp.
-#define DRIFTLESS_EXAMINATIONS(EXAMINATION)
+#define DRIFTLESS_EXAMINATIONS(EXAMINATION) EXAMINATION(drift)
 
 namespace driftless::judge {
 
