@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "experiments/judge/two_body/measure.hpp"
 #include "integrators/flows.hpp"
-#include "tests/two_body_run.hpp"
 
 /// Small explicit schemes into which a fault can be put.
 namespace driftless::two_body {

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 #include <sstream>
 #include <string>
 
-#include "tests/two_body_run.hpp"
+#include "experiments/judge/two_body/measure.hpp"
 
 /// Verdicts on a method from runs at dt, dt/2 and dt/4: one and the same code judges the methods
 /// and the planted faults.

@@ -1,83 +1,11 @@
-#pragma once
+#include "experiments/judge/two_body/measure.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <functional>
-#include <memory>
-#include <vector>
+#include <cmath>
 
-#include "tests/two_body.hpp"
-#include "tests/two_body_moments.hpp"
-
-/// Time averages over an ensemble of pairs, with errors from the scatter of independent copies.
 namespace driftless::two_body {
-
-using Factory = std::function<std::unique_ptr<Integrator>()>;
-
-struct Measured {
-  double mean = 0;
-  double error = 0;
-};
-
-struct Schedule {
-  double dt = 0.1;
-  double settle = 4;           ///< relaxation times before the averages
-  double measure = 16;         ///< relaxation times of the averages
-  std::size_t ensembles = 20;  ///< run one by one, each with its own noise
-  Pairs pairs = {};
-};
-
-struct Outcome {
-  std::vector<Measured> deviations;  ///< by Moment
-  Measured energy_rate;              ///< d ln e/dt of a pair, times <e>/kT
-  double energy_change = 0;          ///< median of |e(end)/e(start) - 1|
-  double largest_energy_change = 0;  ///< and the largest one
-  double momentum_change = 0;        ///< largest of all pairs, in m times the thermal speed
-  double failed_fraction = 0;        ///< of all pairs
-};
-
-/// Mean of each column of y where the regressors x have expectation 0: the intercept of y on x by
-/// least squares, with its standard error from the residuals of the independent rows.
-inline std::vector<Measured> regressed_means(const Eigen::MatrixXd& y, const Eigen::MatrixXd& x) {
-  Eigen::MatrixXd design(x.rows(), x.cols() + 1);
-  design << Eigen::VectorXd::Ones(x.rows()), x;
-  const double scale = std::sqrt(static_cast<double>(x.rows()));
-  for (int c = 1; c < design.cols(); ++c) design.col(c) *= scale / design.col(c).norm();
-  const Eigen::MatrixXd normal = design.transpose() * design;
-  const auto solver = normal.ldlt();
-  const Eigen::MatrixXd coefficients = solver.solve(design.transpose() * y);
-  const double leverage = solver.solve(Eigen::VectorXd::Unit(normal.cols(), 0))(0);
-  const double freedom = static_cast<double>(design.rows() - design.cols());
-  std::vector<Measured> means;
-  for (int c = 0; c < y.cols(); ++c) {
-    const double residual = (y.col(c) - design * coefficients.col(c)).squaredNorm();
-    means.push_back({coefficients(0, c), std::sqrt(residual / freedom * leverage)});
-  }
-  return means;
-}
-
-inline Measured mean_of(const std::vector<double>& values) {
-  const Eigen::Map<const Eigen::ArrayXd> x(values.data(), static_cast<Eigen::Index>(values.size()));
-  const auto count = static_cast<double>(values.size());
-  return {x.mean(), std::sqrt((x - x.mean()).square().sum() / (count - 1) / count)};
-}
-
-/// How many independent noises of a pair a step of the method uses, from what the system counts.
-inline unsigned stages_of(const Bench& bench, const Factory& make) {
-  Pairs few;
-  few.count = 10;
-  Ensemble ensemble(bench, few);
-  const auto integrator = make();
-  const double harmless = 1e-6;  // so small a step that none fails and has to be done again
-  // The first step may draw more than the others.
-  ensemble.step(*integrator, harmless);
-  const auto before = ensemble.system().counters().random_numbers;
-  ensemble.step(*integrator, harmless);
-  const auto drawn = ensemble.system().counters().random_numbers - before;
-  const unsigned kinds =
-      (bench.fluid.has_friction() ? 1U : 0U) + (bench.fluid.has_conduction() ? 1U : 0U);
-  return static_cast<unsigned>(drawn / (few.count * kinds));
-}
+namespace {
 
 /// One ensemble from its start to its end, a row of sums per pair.
 class Trajectory {
@@ -166,14 +94,55 @@ class Trajectory {
 };
 
 /// Rows of equal width as a matrix.
-inline Eigen::MatrixXd as_matrix(const std::vector<double>& values, std::size_t width) {
+Eigen::MatrixXd as_matrix(const std::vector<double>& values, std::size_t width) {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   return Eigen::Map<const Rows>(values.data(), static_cast<Eigen::Index>(values.size() / width),
                                 static_cast<Eigen::Index>(width));
 }
 
-/// Runs the ensembles and measures. Throws StepFailure if no copy is to blame for one.
-inline Outcome measure(const Bench& bench, const Factory& make, const Schedule& run) {
+}  // namespace
+
+std::vector<Measured> regressed_means(const Eigen::MatrixXd& y, const Eigen::MatrixXd& x) {
+  Eigen::MatrixXd design(x.rows(), x.cols() + 1);
+  design << Eigen::VectorXd::Ones(x.rows()), x;
+  const double scale = std::sqrt(static_cast<double>(x.rows()));
+  for (int c = 1; c < design.cols(); ++c) design.col(c) *= scale / design.col(c).norm();
+  const Eigen::MatrixXd normal = design.transpose() * design;
+  const auto solver = normal.ldlt();
+  const Eigen::MatrixXd coefficients = solver.solve(design.transpose() * y);
+  const double leverage = solver.solve(Eigen::VectorXd::Unit(normal.cols(), 0))(0);
+  const double freedom = static_cast<double>(design.rows() - design.cols());
+  std::vector<Measured> means;
+  for (int c = 0; c < y.cols(); ++c) {
+    const double residual = (y.col(c) - design * coefficients.col(c)).squaredNorm();
+    means.push_back({coefficients(0, c), std::sqrt(residual / freedom * leverage)});
+  }
+  return means;
+}
+
+Measured mean_of(const std::vector<double>& values) {
+  const Eigen::Map<const Eigen::ArrayXd> x(values.data(), static_cast<Eigen::Index>(values.size()));
+  const auto count = static_cast<double>(values.size());
+  return {x.mean(), std::sqrt((x - x.mean()).square().sum() / (count - 1) / count)};
+}
+
+unsigned stages_of(const Bench& bench, const Factory& make) {
+  Pairs few;
+  few.count = 10;
+  Ensemble ensemble(bench, few);
+  const auto integrator = make();
+  const double harmless = 1e-6;  // so small a step that none fails and has to be done again
+  // The first step may draw more than the others.
+  ensemble.step(*integrator, harmless);
+  const auto before = ensemble.system().counters().random_numbers;
+  ensemble.step(*integrator, harmless);
+  const auto drawn = ensemble.system().counters().random_numbers - before;
+  const unsigned kinds =
+      (bench.fluid.has_friction() ? 1U : 0U) + (bench.fluid.has_conduction() ? 1U : 0U);
+  return static_cast<unsigned>(drawn / (few.count * kinds));
+}
+
+Outcome measure(const Bench& bench, const Factory& make, const Schedule& run) {
   std::vector<double> averages, controls, gains, changes;
   Outcome outcome;
   double failed = 0;

@@ -1,0 +1,154 @@
+#include "experiments/judge/two_body/ensemble.hpp"
+
+#include <cmath>
+#include <set>
+
+namespace driftless::two_body {
+namespace {
+
+void start_far(const Bench& bench, State& state) {
+  const double kinetic = 0.01 * bench.law().kinetic_energy(bench.energy);
+  const double speed = std::sqrt(kinetic / bench.fluid.mass());
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const bool first = i % 2 == 0;
+    state.velocity[i] = Vector(first ? speed : -speed, 0, 0);
+    state.internal_energy[i] = (first ? 0.85 : 0.15) * (bench.energy - kinetic);
+  }
+}
+
+System build(const Bench& bench, const Pairs& pairs) {
+  const Noise noise(pairs.seed, pairs.replica);
+  const std::size_t particles = 2 * pairs.count;
+  const Box box = make_box(bench.fluid, Layout::pairs, particles, 1, bench.pair_distance);
+  State state =
+      place(box, Layout::pairs, Placement::lattice, particles, bench.pair_distance, noise);
+  draw_microcanonical(bench.fluid, Layout::pairs, bench.energy, noise, state);
+  if (pairs.start == Start::far) start_far(bench, state);
+  boost_frame(Vector(pairs.frame_velocity, 0, 0), state);
+  return {bench.fluid, box, std::move(state), noise, true};
+}
+
+std::vector<std::size_t> pairs_of(const StepFailure& failure) {
+  std::set<std::size_t> pairs;
+  for (const auto id : failure.ids()) pairs.insert(id / 2);
+  return {pairs.begin(), pairs.end()};
+}
+
+}  // namespace
+
+Ensemble::Ensemble(const Bench& bench, const Pairs& pairs)
+    : bench_(bench),
+      noise_(pairs.seed, pairs.replica),
+      system_(build(bench, pairs)),
+      alive_(pairs.count, true) {}
+
+void Ensemble::step(Integrator& integrator, double dt) {
+  ++step_;
+  noise_.set_step(step_);
+  system_.set_step(step_);
+  before_ = system_.motion();
+  kept_ = integrator.save();
+  for (;;) {
+    try {
+      integrator.step(system_, dt);
+      break;
+    } catch (const StepFailure& failure) {
+      const auto failed =
+          failure.ids().empty() ? culprits(integrator, dt, 0, size()) : pairs_of(failure);
+      if (failed.empty()) throw;
+      give_up(failed);
+      roll_back(integrator, 0, size());
+    }
+  }
+  give_up_runaways(integrator);
+}
+
+PairView Ensemble::view(std::size_t pair) const {
+  const auto& motion = system_.motion();
+  // e points from the second particle, at the smaller x, to the first.
+  const double v = motion.velocity[2 * pair].x() - motion.velocity[2 * pair + 1].x();
+  return {v, 0.5 * bench_.fluid.reduced_mass() * v * v, motion.internal_energy[2 * pair],
+          motion.internal_energy[2 * pair + 1]};
+}
+
+double Ensemble::whole_energy(std::size_t pair) const {
+  const auto& motion = system_.motion();
+  double sum = 0;
+  for (const std::size_t i : {2 * pair, 2 * pair + 1}) {
+    sum += 0.5 * bench_.fluid.mass() * motion.velocity[i].squaredNorm() + motion.internal_energy[i];
+  }
+  return sum;
+}
+
+Vector Ensemble::momentum(std::size_t pair) const {
+  const auto& velocity = system_.motion().velocity;
+  return bench_.fluid.mass() * (velocity[2 * pair] + velocity[2 * pair + 1]);
+}
+
+Noise::PairNormals Ensemble::normals(std::size_t pair, unsigned stage) const {
+  const auto id = static_cast<std::uint32_t>(2 * pair);
+  return noise_.pair_normals(id, id + 1, stage, true, true);
+}
+
+void Ensemble::give_up(const std::vector<std::size_t>& pairs) {
+  for (const std::size_t pair : pairs) alive_[pair] = false;
+  failed_ += pairs.size();
+}
+
+/// Explicit methods can throw a copy to an energy from where it hardly comes back, without any
+/// number being illegal: four times the energy, or a quarter, is a failure too.
+void Ensemble::give_up_runaways(Integrator& integrator) {
+  std::vector<std::size_t> runaways;
+  for (std::size_t pair = 0; pair < size(); ++pair) {
+    if (!alive_[pair]) continue;
+    const double e = view(pair).energy() / bench_.energy;
+    if (!(e < 4 && e > 0.25)) runaways.push_back(pair);
+  }
+  if (runaways.empty()) return;
+  give_up(runaways);
+  before_ = system_.motion();
+  kept_ = integrator.save();
+  roll_back(integrator, 0, size());
+}
+
+/// The pairs of a range that fail, where a failure names no particle: found by halving.
+std::vector<std::size_t> Ensemble::culprits(Integrator& integrator, double dt, std::size_t first,
+                                            std::size_t last) {
+  roll_back(integrator, first, last);
+  try {
+    integrator.step(system_, dt);
+    return {};
+  } catch (const StepFailure& failure) {
+    if (!failure.ids().empty()) return pairs_of(failure);
+    if (last - first == 1) return {first};
+    const std::size_t middle = (first + last) / 2;
+    auto found = culprits(integrator, dt, first, middle);
+    const auto others = culprits(integrator, dt, middle, last);
+    found.insert(found.end(), others.begin(), others.end());
+    return found;
+  }
+}
+
+/// Back to before the step, without the pairs that failed or lie outside of a range: the two
+/// particles of such a pair are put on one spot, where a pair has no direction and exchanges
+/// nothing. They keep their places in storage, so that what an integrator keeps from step to step
+/// stays in order.
+void Ensemble::roll_back(Integrator& integrator, std::size_t first, std::size_t last) {
+  State state = system_.state();
+  state.velocity = before_.velocity;
+  state.internal_energy = before_.internal_energy;
+  for (std::size_t pair = 0; pair < size(); ++pair) {
+    const bool present = alive_[pair] && first <= pair && pair < last;
+    const auto i = 2 * pair, j = i + 1;
+    state.position[j] = state.position[i];
+    if (present) state.position[j].x() -= bench_.pair_distance;
+    if (alive_[pair]) continue;
+    state.velocity[i] = state.velocity[j] = Vector::Zero();
+    // whatever an impulse kept from the step before may still do to it
+    state.internal_energy[i] = state.internal_energy[j] = 100 * bench_.energy;
+  }
+  system_.set_state(std::move(state));
+  if (!kept_.empty()) integrator.load(kept_);
+}
+
+}  // namespace driftless::two_body
