@@ -51,8 +51,8 @@ class AvalosMackieExplicit : public Integrator {
     const Fluid& fluid = system.fluid();
     system.accumulate([&](const auto& pair) { return noise_exchange(fluid, pair, dt); }, exchange_);
     trial_ = system.motion();
+    take_velocities(system, exchange_, trial_.velocity);
     for (std::size_t i = 0; i < system.size(); ++i) {
-      trial_.velocity[i] += exchange_.momentum[i] / fluid.mass();
       trial_.internal_energy[i] += exchange_.energy[i];
     }
   }

@@ -4,14 +4,6 @@
 
 namespace driftless {
 
-/// Half of the kinetic energy that a pair gains in half a kick, from either internal energy.
-template <class V>
-Transfer<V> half_kick_work(const Fluid& fluid, const Pair<V>& start, const TrialPair<V>& end,
-                           double dt) {
-  const V work = 0.125 * dt * fluid.repulsive_force(start.r) * (start.v + end.v);
-  return {V(0), -work, -work};
-}
-
 /// Velocity Verlet with the conservative forces that puts its energy error back, pair by pair
 /// (derived). A kick of F_ij dt/2 from v to v_h gives a pair the kinetic energy
 /// (dt/2) F_ij (v + v_h)/2, v along e, so that the step's error is exactly a sum over pairs of
@@ -33,20 +25,20 @@ class EnergyKeepingVerlet {
   void half_kick(System& system, double dt) {
     const Fluid& fluid = system.fluid();
     if (!fluid.has_repulsion()) return;
-    const auto& force = system.conservative_force();
-    trial_ = system.motion();
-    for (std::size_t i = 0; i < system.size(); ++i) {
-      trial_.velocity[i] += force[i] * (dt / (2 * fluid.mass()));
-    }
+    before_ = system.motion();
+    system.kick(dt / 2);
+    // At the midpoint it makes no difference which end of the kick a pair takes for its start.
     system.accumulate(
-        trial_,
-        [&](const auto& start, const auto& end) { return half_kick_work(fluid, start, end, dt); },
+        before_,
+        [&](const auto& after_kick, const auto& before_kick) {
+          return midpoint_work(0.5 * dt * fluid.repulsive_force(after_kick.r), after_kick,
+                               before_kick);
+        },
         work_);
-    for (std::size_t i = 0; i < system.size(); ++i) trial_.internal_energy[i] += work_.energy[i];
-    system.set_motion(trial_);
+    system.apply(work_);
   }
 
-  Motion trial_;
+  Motion before_;
   Exchange work_;
 };
 

@@ -74,6 +74,16 @@ inline void euler_maruyama_step(System& system, double dt, Exchange& exchange) {
   system.apply(exchange);
 }
 
+/// The velocities to which the momenta of an exchange lead; the system stays as it is.
+inline void take_velocities(const System& system, const Exchange& exchange,
+                            std::vector<Vector>& velocity) {
+  const double inverse_mass = 1 / system.fluid().mass();
+  const auto& start = system.motion().velocity;
+  for (std::size_t i = 0; i < system.size(); ++i) {
+    velocity[i] = start[i] + exchange.momentum[i] * inverse_mass;
+  }
+}
+
 /// The pair as it stands after an exchange, for the next flow of the same pair.
 template <class V>
 Pair<V> after(const Fluid& fluid, Pair<V> pair, const Transfer<V>& transfer) {

@@ -19,9 +19,7 @@ class MidpointWork {
     };
     system.accumulate([&](const auto& pair) { return Transfer{momentum(pair)}; }, exchange_);
     trial_ = system.motion();
-    for (std::size_t i = 0; i < system.size(); ++i) {
-      trial_.velocity[i] += exchange_.momentum[i] / fluid.mass();
-    }
+    take_velocities(system, exchange_, trial_.velocity);
     system.accumulate(
         trial_,
         [&](const auto& start, const auto& end) {
