@@ -68,26 +68,34 @@ Proposal<V> friction_proposal(const Fluid& fluid, const Pair<V>& pair, double dt
   return {-x * mean_decay(x) * pair.v, mean / mu * 2 * x * mean_decay(2 * x)};
 }
 
-/// Friction of a pair over dt, proposed by friction_proposal: exact in law at any dt, internal
-/// energies never below 0. O(dt^{3/2} k/phi) of the moves are refused where Gamma is constant.
-/// Where it depends on the energies, the refusals, now O(dt^{1/2} k/phi), make the noise-induced
-/// friction, and rates converge no faster than that.
+/// A move of one coordinate of a pair, accepted against the pair's exact law; internal energies
+/// never fall below 0.
+///   propose(pair)    -> Proposal of the coordinate's change
+///   exchange(change) -> Transfer that makes it
+template <class V, class Propose, class ExchangeOf>
+Transfer<V> metropolis_move(const Fluid& fluid, const Pair<V>& pair, const V& noise,
+                            const V& uniform, Propose&& propose, ExchangeOf&& exchange) {
+  using std::sqrt;
+  const Proposal<V> there = propose(pair);
+  const V change = there.drift + sqrt(fluid.boltzmann() * there.spread) * noise;
+  const Transfer<V> transfer = exchange(change);
+  const PossibleGains<V> gains(pair, transfer);
+  const Proposal<V> back = propose(after(fluid, pair, {transfer.momentum, gains.i, gains.j}));
+  const V ratio = acceptance(fluid, entropy_gain(fluid, pair, gains), noise, -change - back.drift,
+                             there.spread, back.spread);
+  return accepted(fluid, transfer, gains.possible, ratio, uniform);
+}
+
+/// Friction of a pair over dt, proposed by friction_proposal: exact in law at any dt.
+/// O(dt^{3/2} k/phi) of the moves are refused where Gamma is constant. Where it depends on the
+/// energies, the refusals, now O(dt^{1/2} k/phi), make the noise-induced friction, and rates
+/// converge no faster than that.
 template <class V>
 Transfer<V> metropolis_friction(const Fluid& fluid, const Pair<V>& pair, double dt) {
-  using std::sqrt;
-  const auto there = friction_proposal(fluid, pair, dt);
-  const V change = there.drift + sqrt(fluid.boltzmann() * there.spread) * pair.noise;
-  const auto transfer = change_velocity(fluid, pair, change);
-  const PossibleGains<V> gains(pair, transfer);
-  Pair<V> proposed = pair;
-  proposed.v += change;
-  proposed.u_i += gains.i;
-  proposed.u_j += gains.j;
-  const auto back = friction_proposal(fluid, proposed, dt);
-  const V gain = entropy_gain(fluid, pair, gains);
-  const V ratio =
-      acceptance(fluid, gain, pair.noise, -change - back.drift, there.spread, back.spread);
-  return accepted(fluid, transfer, gains.possible, ratio, pair.uniform);
+  return metropolis_move(
+      fluid, pair, pair.noise, pair.uniform,
+      [&](const Pair<V>& seen) { return friction_proposal(fluid, seen, dt); },
+      [&](const V& change) { return change_velocity(fluid, pair, change); });
 }
 
 /// How conduction is proposed.
@@ -121,23 +129,16 @@ Proposal<V> conduction_proposal(const Fluid& fluid, const Pair<V>& pair, double 
           2 * lambda * dt * mean_decay(2 * y) * theta_i * theta_j};
 }
 
-/// Conduction of a pair over dt: exact in law at any dt, internal energies never below 0.
+/// Conduction of a pair over dt: exact in law at any dt.
 template <class V>
 Transfer<V> metropolis_conduction(const Fluid& fluid, const Pair<V>& pair, double dt,
                                   ConductionProposal kind) {
-  using std::sqrt;
-  const auto there = conduction_proposal(fluid, pair, dt, kind);
-  const V heat = there.drift + sqrt(fluid.boltzmann() * there.spread) * pair.heat_noise;
-  const Transfer<V> transfer{V(0), heat, -heat};
-  const PossibleGains<V> gains(pair, transfer);
-  Pair<V> proposed = pair;
-  proposed.u_i += gains.i;
-  proposed.u_j += gains.j;
-  const auto back = conduction_proposal(fluid, proposed, dt, kind);
-  const V gain = entropy_gain(fluid, pair, gains);
-  const V ratio =
-      acceptance(fluid, gain, pair.heat_noise, -heat - back.drift, there.spread, back.spread);
-  return accepted(fluid, transfer, gains.possible, ratio, pair.heat_uniform);
+  return metropolis_move(
+      fluid, pair, pair.heat_noise, pair.heat_uniform,
+      [&](const Pair<V>& seen) { return conduction_proposal(fluid, seen, dt, kind); },
+      [](const V& heat) {
+        return Transfer<V>{V(0), heat, -heat};
+      });
 }
 
 /// Friction of a pair, then its conduction, over dt; in a reverse sweep the other way round.
