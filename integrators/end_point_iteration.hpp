@@ -7,36 +7,68 @@
 
 namespace driftless {
 
-/// Solves p' = p + sum f(u'), u' = u + sum g(p', u') over the whole system by fixed-point iteration
-/// and finishes the step with the Euler move r' = r + v dt.
+/// One round of the iteration that solves p' = p + sum f(u'), u' = u + sum g(p', u') over the whole
+/// system: p' from the last u', then the next u' from that p' and the same f, so that what g
+/// conserves is conserved to rounding in every round.
 ///   momentum(start, end)      -> the pair's momentum transfer f, from energies u' alone
 ///   energy(start, end, f)     -> Transfer whose energies are g
-/// Each round takes p' from the last u' and u' from that p' with the same f, so that what g
-/// conserves is conserved to rounding in every round. Converged when no u' moves by more than
-/// `tolerance` of the mean internal energy. Throws StepFailure.
+class EndPointRound {
+ public:
+  /// Begins at the present motion.
+  void start(const System& system) { trial_ = system.motion(); }
+
+  template <class Momentum, class Energy>
+  void evaluate(System& system, Momentum&& momentum, Energy&& energy) {
+    system.count_solver_iteration();
+    system.accumulate(
+        trial_, [&](const auto& start, const auto& end) { return Transfer{momentum(start, end)}; },
+        exchange_);
+    take_velocities(system, exchange_, trial_.velocity);
+    system.accumulate(
+        trial_,
+        [&](const auto& start, const auto& end) {
+          return energy(start, end, momentum(start, end));
+        },
+        exchange_);
+  }
+
+  /// Where the round started: the last u', and after it the p' that follow.
+  Motion& trial() { return trial_; }
+  /// What the round makes of u' of a particle.
+  double next(const System& system, std::size_t i) const {
+    return system.motion().internal_energy[i] + exchange_.energy[i];
+  }
+
+ private:
+  Motion trial_;
+  Exchange exchange_;
+};
+
+/// Whether a noise amplitude follows the internal energies. Where none does, the equations are
+/// explicit: the first round solves them, and another one would find the same bits.
+inline bool amplitudes_follow_energies(const Fluid& fluid) {
+  const auto& f = fluid.parameters();
+  return fluid.fluctuates() &&
+         ((f.has_friction() && f.friction_closure != FrictionClosure::noise) ||
+          (f.has_conduction() && f.heat_form != HeatForm::inverse_temperature));
+}
+
+/// Repeats the round until no u' moves by more than `tolerance` of the mean internal energy, and
+/// finishes the step with the Euler move r' = r + v dt. Throws StepFailure. It stays plain: what
+/// acceleration saves in rounds it costs in work on vectors (tests/benchmark/fixed_point.cpp).
 class EndPointIteration {
  public:
   template <class Momentum, class Energy>
   void step(System& system, double dt, double tolerance, Momentum&& momentum, Energy&& energy) {
     constexpr int most_rounds = 100;
-    trial_ = system.motion();
-    for (int round = 0; round < most_rounds; ++round) {
-      system.count_solver_iteration();
-      system.accumulate(
-          trial_,
-          [&](const auto& start, const auto& end) { return Transfer{momentum(start, end)}; },
-          exchange_);
-      set_velocities(system);
-      system.accumulate(
-          trial_,
-          [&](const auto& start, const auto& end) {
-            return energy(start, end, momentum(start, end));
-          },
-          exchange_);
-      set_energies(system, tolerance);
-      if (moving_.empty()) {
+    const bool is_explicit = !amplitudes_follow_energies(system.fluid());
+    round_.start(system);
+    for (int n = 0; n < most_rounds; ++n) {
+      round_.evaluate(system, momentum, energy);
+      take_energies(system, tolerance);
+      if (moving_.empty() || is_explicit) {
         system.move(dt);
-        system.set_motion(trial_);
+        system.set_motion(round_.trial());
         return;
       }
     }
@@ -44,33 +76,25 @@ class EndPointIteration {
   }
 
  private:
-  void set_velocities(const System& system) {
-    const auto& start = system.motion();
-    for (std::size_t i = 0; i < system.size(); ++i) {
-      trial_.velocity[i] = start.velocity[i] + exchange_.momentum[i] / system.fluid().mass();
-    }
-  }
-
   /// Takes the new energies and notes whose still moved.
-  void set_energies(const System& system, double tolerance) {
-    const auto& start = system.motion();
+  void take_energies(const System& system, double tolerance) {
+    auto& energies = round_.trial().internal_energy;
     const auto& id = system.state().id;
     const double limit = tolerance * system.internal_energy() / static_cast<double>(system.size());
     std::vector<std::uint32_t> negative;
     moving_.clear();
     for (std::size_t i = 0; i < system.size(); ++i) {
-      const double next = start.internal_energy[i] + exchange_.energy[i];
+      const double next = round_.next(system, i);
       if (!std::isfinite(next)) throw StepFailure(FailureCause::non_finite, {id[i]});
       if (next <= 0) negative.push_back(id[i]);
-      if (std::abs(next - trial_.internal_energy[i]) > limit) moving_.push_back(id[i]);
-      trial_.internal_energy[i] = next;
+      if (std::abs(next - energies[i]) > limit) moving_.push_back(id[i]);
+      energies[i] = next;
     }
     // No coefficient exists at a negative energy: the iteration cannot go on from here.
     if (!negative.empty()) throw StepFailure(FailureCause::negative_internal_energy, negative);
   }
 
-  Motion trial_;
-  Exchange exchange_;
+  EndPointRound round_;
   std::vector<std::uint32_t> moving_;  ///< ids that have not converged
 };
 

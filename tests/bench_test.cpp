@@ -202,7 +202,7 @@ TEST(Bench, EveryMethodHasItsCostOrItsCause) {
       EXPECT_EQ(row.iterations, 0);
     }
     if (row.method == "avalos-mackie-implicit") {
-      EXPECT_GT(row.iterations, 1);
+      EXPECT_EQ(row.iterations, 1);  // amplitudes of the closure `noise`: explicit
     }
   }
 }
