@@ -4,99 +4,28 @@
 #include <cmath>
 #include <numeric>
 
-#include "tests/method_names.hpp"
+#include "experiments/judge/wide_system.hpp"
 #include "tests/small_system.hpp"
 
-// Threads, lanes and the places of particles in memory are nobody's business: every method takes
-// the same path, to the last bit where nothing but the way of working differs. The system has
-// several tiles of cells along each axis.
+// Threads, lanes and the places of particles in memory are nobody's business: a path is the same,
+// to the last bit where nothing but the way of working differs. The system has several tiles of
+// cells along each axis. That every method keeps to this is in invariants_test.
 namespace driftless::testing {
 namespace {
 
+using judge::wide_box;
+using judge::wide_fluid;
+using judge::wide_state;
+using judge::wide_system;
+
 constexpr double time_step = 0.01;
 constexpr std::uint64_t steps = 6;
-
-Box wide_box() { return {Vector(12.3, 9.4, 5.7)}; }
-
-State wide_state(const FluidParameters& fluid) {
-  Uniform uniform(11);
-  State state;
-  const auto particles = static_cast<std::uint32_t>(3 * wide_box().volume());
-  for (std::uint32_t i = 0; i < particles; ++i) {
-    state.position.push_back(uniform.vector(0, 1).cwiseProduct(wide_box().lengths));
-    state.velocity.push_back(uniform.vector(-1.5, 1.5));
-    state.internal_energy.push_back(fluid.heat_capacity * fluid.temperature * uniform(0.8, 1.2));
-    state.id.push_back(i);
-  }
-  std::shuffle(state.id.begin(), state.id.end(), uniform.engine());
-  return state;
-}
-
-FluidParameters wide_fluid(FrictionClosure closure) {
-  auto f = small_fluid({closure, HeatForm::temperature, true}, 0.1);
-  f.heat_capacity = 60;
-  f.friction = 2;
-  return f;
-}
-
-System wide_system(const FluidParameters& f, const State& state, unsigned threads = 1) {
-  System system(Fluid(f), wide_box(), state, Noise(5, 1));
-  system.set_threads(threads);
-  return system;
-}
 
 State path(const Method& method, const FluidParameters& f, const State& start, unsigned threads) {
   System system = wide_system(f, start, threads);
   const auto integrator = method.make({});
   run(*integrator, system, time_step, 1, steps + 1);
   return system.state();
-}
-
-State permuted(const State& state, const std::vector<std::size_t>& order) {
-  State other;
-  for (const auto place : order) {
-    other.position.push_back(state.position[place]);
-    other.velocity.push_back(state.velocity[place]);
-    other.internal_energy.push_back(state.internal_energy[place]);
-    other.id.push_back(state.id[place]);
-  }
-  return other;
-}
-
-class Parallel : public ::testing::TestWithParam<const Method*> {};
-
-TEST_P(Parallel, AnyNumberOfThreadsTakesTheSamePath) {
-  for (const auto closure : GetParam()->closures) {
-    const auto f = wide_fluid(closure);
-    const State start = wide_state(f), alone = path(*GetParam(), f, start, 1);
-    EXPECT_GT(distance(wide_box(), alone, start).velocity, 0.1);
-    EXPECT_TRUE(same_bits(path(*GetParam(), f, start, 2), alone));
-    EXPECT_TRUE(same_bits(path(*GetParam(), f, start, 4), alone));
-  }
-}
-
-TEST_P(Parallel, ARestartOnOtherThreadsTakesTheSamePath) {
-  const auto f = wide_fluid(GetParam()->closures.front());
-  const State start = wide_state(f);
-  System first = wide_system(f, start, 1);
-  const auto before = GetParam()->make({});
-  run(*before, first, time_step, 1, steps / 2 + 1);
-  System second = wide_system(f, first.state(), 3);
-  const auto after = GetParam()->make({});
-  after->load(before->save());
-  run(*after, second, time_step, steps / 2 + 1, steps + 1);
-  EXPECT_TRUE(same_bits(second.state(), path(*GetParam(), f, start, 1)));
-}
-
-TEST_P(Parallel, PlacesInMemoryDoNotMatter) {
-  const auto f = wide_fluid(GetParam()->closures.front());
-  const State start = wide_state(f);
-  std::vector<std::size_t> order(start.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  Uniform uniform(12);
-  std::shuffle(order.begin(), order.end(), uniform.engine());
-  EXPECT_TRUE(same_bits(path(*GetParam(), f, permuted(start, order), 1),
-                        permuted(path(*GetParam(), f, start, 1), order)));
 }
 
 /// So many that tiles are cut along every axis.
@@ -124,8 +53,6 @@ TEST(Threads, OfManyParticlesTakeTheSamePath) {
     EXPECT_GT(distance(box, alone, start).velocity, 0.1);
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Methods, Parallel, ::testing::ValuesIn(methods()), test_name);
 
 TEST(SameBits, AreNotThoseOfASlightlyOtherStart) {
   const auto f = wide_fluid(FrictionClosure::noise);
