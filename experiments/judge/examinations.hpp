@@ -3,7 +3,9 @@
 #include "experiments/judge/examination.hpp"
 
 /// Every examination, a line each: `name` is defined in name.cpp.
-#define DRIFTLESS_EXAMINATIONS(EXAMINATION) EXAMINATION(drift)
+#define DRIFTLESS_EXAMINATIONS(EXAMINATION) \
+  EXAMINATION(invariants)                   \
+  EXAMINATION(drift)
 
 namespace driftless::judge {
 
