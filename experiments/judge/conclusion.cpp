@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "experiments/statistics.hpp"
 
@@ -111,19 +112,24 @@ json to_json(const Conclusion& conclusion) {
           {"tables", list(conclusion.tables)}};
 }
 
-Finding zero_finding(std::string subject, double value, double error, double tolerance) {
+Finding zero_finding(std::string subject, double value, double error, double tolerance,
+                     double degrees_of_freedom) {
   Finding finding;
   finding.subject = std::move(subject);
   finding.value = value;
-  finding.lower = value - interval_quantile * error;
-  finding.upper = value + interval_quantile * error;
-  finding.resolution = certain * error;
+  const double width = interval_quantile * student_factor(degrees_of_freedom) * error;
+  finding.lower = value - width;
+  finding.upper = value + width;
+  const double rarely = 0.5 * std::erfc(certain / std::numbers::sqrt2);
+  const double sure = std::isfinite(degrees_of_freedom)
+                          ? student_quantile(degrees_of_freedom, rarely) * error
+                          : certain * error;
+  finding.resolution = sure;
   const bool known = std::isfinite(value) && std::isfinite(error);
-  if (known && std::abs(value) > certain * error) {
+  if (known && std::abs(value) > sure) {
     finding.verdict = Verdict::fails;
   } else {
-    const bool sharp = known && certain * error <= tolerance;
-    finding.verdict = sharp ? Verdict::holds : Verdict::not_resolved;
+    finding.verdict = known && sure <= tolerance ? Verdict::holds : Verdict::not_resolved;
   }
   return finding;
 }

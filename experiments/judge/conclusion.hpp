@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -89,7 +90,10 @@ inline constexpr double certain = 5;
 
 /// A quantity that should be zero: fails if it is away from it by more than `certain` errors, holds
 /// if it is not and its resolution - `certain` errors - is within `tolerance`, else not resolved.
-/// `error` is a standard error (infinite: not resolved); `sentence` is left to the caller.
-Finding zero_finding(std::string subject, double value, double error, double tolerance);
+/// `error` is a standard error (infinite: not resolved) with so many degrees of freedom: with few
+/// of them a violation is certain, and an interval one of 95 %, only at more errors, by Student's
+/// law. `sentence` is left to the caller.
+Finding zero_finding(std::string subject, double value, double error, double tolerance,
+                     double degrees_of_freedom = std::numeric_limits<double>::infinity());
 
 }  // namespace driftless::judge

@@ -5,6 +5,7 @@
 /// Every examination, a line each: `name` is defined in name.cpp.
 #define DRIFTLESS_EXAMINATIONS(EXAMINATION) \
   EXAMINATION(invariants)                   \
+  EXAMINATION(galilean)                     \
   EXAMINATION(drift)
 
 namespace driftless::judge {
