@@ -6,6 +6,9 @@
 
 #include "experiments/bench/bench.hpp"
 #include "experiments/campaign.hpp"
+#include "experiments/compare/compare.hpp"
+#include "experiments/compare/compare_text.hpp"
+#include "experiments/files.hpp"
 #include "experiments/judge/judge.hpp"
 #include "experiments/observables.hpp"
 #include "experiments/provenance.hpp"
@@ -20,6 +23,7 @@ namespace {
 
 using namespace driftless;
 namespace fs = std::filesystem;
+using nlohmann::json;
 
 struct Arguments {
   std::string study, result, directory, kind;
@@ -162,6 +166,30 @@ void report(const Arguments& arguments) {
   print_report(result, directory);
 }
 
+struct ComparedFiles {
+  std::string base, changed, json;
+  bool gate = false;
+};
+
+/// The exit code.
+int compare_files(const ComparedFiles& files, CompareOptions options) {
+  options.all_cells = files.gate;
+  json comparison;
+  try {
+    comparison = compare(read_result(files.base), read_result(files.changed), options);
+  } catch (const NotComparable& fault) {
+    throw InputError(fmt::format("{} (BASE) and {} (NEW) cannot be compared: {}", files.base,
+                                 files.changed, fault.what()));
+  }
+  if (!files.json.empty()) write_atomically(files.json, comparison.dump(1) + "\n");
+  fmt::print("{}", comparison_text(comparison));
+  return files.gate && comparison["verdict"] == "worse" ? 1 : 0;
+}
+
+void keep_numbers(const std::string& result, const std::string& file) {
+  write_atomically(file, without_curves(read_result(result)).dump(1) + "\n");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -238,6 +266,39 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1U, 4096U));
   judge_command->add_flag("-q,--quiet", judged.quiet, "no progress");
   judge_command->callback([&] { run_judge(judged); });
+  int exit_code = 0;
+  ComparedFiles files;
+  CompareOptions compare_options;
+  auto* compare_command = app.add_subcommand(
+      "compare",
+      "what became better or worse from one result to another, beyond chance; exit code 0, or 2 if "
+      "they cannot be compared");
+  compare_command->add_option("base", files.base, "result.json or its folder: as it was")
+      ->required();
+  compare_command->add_option("new", files.changed, "result.json or its folder: as it is")
+      ->required();
+  compare_command->add_flag(
+      "--gate", files.gate,
+      "exit code 1 if anything is worse, 2 also if a cell of BASE is missing");
+  compare_command->add_option("--json", files.json, "write the comparison to this file too");
+  compare_command
+      ->add_option("--minimum-effect", compare_options.minimum_effect,
+                   "smaller differences are the same, as a share of the exact value")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  compare_command
+      ->add_option("--wanted-effect", compare_options.wanted_effect,
+                   "what a test must be able to see, or it has too little data")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  compare_command->callback([&] { exit_code = compare_files(files, compare_options); });
+
+  std::string kept, kept_in;
+  auto* keep_command = app.add_subcommand(
+      "keep", "write a result's numbers alone, without curves: small enough to be committed");
+  keep_command->add_option("result", kept, "result.json or its folder")->required();
+  keep_command->add_option("file", kept_in, "file to write")->required();
+  keep_command->callback([&] { keep_numbers(kept, kept_in); });
 
   app.add_subcommand("methods", "list the integrators")->callback(print_methods);
   auto* scenes = app.add_subcommand("scenes", "list the scenes and every key they set");
@@ -281,5 +342,5 @@ int main(int argc, char** argv) {
     std::cerr << "driftless: " << error.what() << '\n';
     return 1;
   }
-  return 0;
+  return exit_code;
 }
