@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "experiments/bench/bench.hpp"
 #include "experiments/campaign.hpp"
@@ -28,6 +29,7 @@ using nlohmann::json;
 struct Arguments {
   std::string study, result, directory, kind;
   unsigned threads = 0;
+  std::optional<std::uint64_t> seed;
   std::vector<std::string> modules;
   bool json = false, quiet = false;
 };
@@ -125,13 +127,15 @@ void print_report(const nlohmann::json& result, const fs::path& directory) {
 }
 
 void run(const Arguments& arguments) {
-  const Study study = read_and_warn(arguments.study);
+  Study study = read_and_warn(arguments.study);
+  if (arguments.seed) study.seed = *arguments.seed;
   const fs::path directory = arguments.directory.empty()
                                  ? fs::path("driftless-results") / fs::path(arguments.study).stem()
                                  : fs::path(arguments.directory);
   std::string command = "driftless";
   for (const auto& module : loaded_modules()) command += " --methods " + module.string();
   command += fmt::format(" run {} -o {}", arguments.study, directory.string());
+  if (arguments.seed) command += fmt::format(" --seed {}", *arguments.seed);
   print_report(run_campaign(study, {directory, arguments.threads, command, arguments.quiet}),
                directory);
 }
@@ -217,6 +221,7 @@ int main(int argc, char** argv) {
       ->add_option("-t,--threads", arguments.threads,
                    "threads (default: as many processors as this process may use)")
       ->check(CLI::Range(1U, 4096U));
+  run_command->add_option("--seed", arguments.seed, "another seed than the study's");
   run_command->add_flag("-q,--quiet", arguments.quiet, "no progress");
   run_command->callback([&] { run(arguments); });
 
@@ -281,6 +286,7 @@ int main(int argc, char** argv) {
       "--gate", files.gate,
       "exit code 1 if anything is worse, 2 also if a cell of BASE is missing");
   compare_command->add_option("--json", files.json, "write the comparison to this file too");
+  compare_command->add_option("--only", compare_options.method, "this method alone");
   compare_command
       ->add_option("--minimum-effect", compare_options.minimum_effect,
                    "smaller differences are the same, as a share of the exact value")

@@ -38,6 +38,10 @@ const json* counterpart(const json& cell, const json& result) {
   return nullptr;
 }
 
+bool is_chosen(const json& cell, const std::string& method) {
+  return method.empty() || cell["method"] == method;
+}
+
 bool applies(const json* cell) { return cell && (*cell)["status"] != "not_applicable"; }
 
 void require_same_durations(const json& base, const json& changed) {
@@ -68,14 +72,14 @@ void require_same_scene(const json& base, const json& changed) {
 
 }  // namespace
 
-CommonCells common_cells(const json& base, const json& changed) {
+CommonCells common_cells(const json& base, const json& changed, const std::string& method) {
   require_same_durations(base, changed);
   for (const auto& scene : base["scenes"]) {
     if (const json* other = scene_named(changed, scene["name"])) require_same_scene(scene, *other);
   }
   CommonCells cells;
   for (const auto& cell : base["cells"]) {
-    if (!applies(&cell)) continue;
+    if (!applies(&cell) || !is_chosen(cell, method)) continue;
     const json* other = counterpart(cell, changed);
     if (!applies(other)) {
       cells.missing.push_back(&cell);
@@ -85,10 +89,13 @@ CommonCells common_cells(const json& base, const json& changed) {
         {scene_named(base, cell["scene"]), scene_named(changed, cell["scene"]), &cell, other});
   }
   for (const auto& cell : changed["cells"]) {
-    if (applies(&cell) && !applies(counterpart(cell, base))) cells.added.push_back(&cell);
+    if (applies(&cell) && is_chosen(cell, method) && !applies(counterpart(cell, base)))
+      cells.added.push_back(&cell);
   }
   if (cells.common.empty()) {
-    throw NotComparable("no cell (scene, method, options and time step) stands in both results");
+    throw NotComparable(
+        fmt::format("no cell (scene, method, options and time step){} stands in both results",
+                    method.empty() ? "" : " of " + method));
   }
   return cells;
 }

@@ -21,9 +21,10 @@ struct CommonCells {
   std::vector<const nlohmann::json*> added;    ///< NEW has them alone
 };
 
-/// Throws NotComparable if durations or the parameters of common scenes differ or no cell is
-/// common.
-CommonCells common_cells(const nlohmann::json& base, const nlohmann::json& changed);
+/// Of one method, or of all if `method` is empty. Throws NotComparable if durations or the
+/// parameters of common scenes differ or no cell is common.
+CommonCells common_cells(const nlohmann::json& base, const nlohmann::json& changed,
+                         const std::string& method);
 
 /// {scene, method, options, time_step} of a cell.
 nlohmann::json cell_identity(const nlohmann::json& cell);

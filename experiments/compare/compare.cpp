@@ -51,7 +51,10 @@ bool is_worse_than_before(const ObservableChange& change) {
 class Comparison {
  public:
   Comparison(const json& base, const json& changed, const CompareOptions& options)
-      : base_(base), changed_(changed), options_(options), cells_(common_cells(base, changed)) {}
+      : base_(base),
+        changed_(changed),
+        options_(options),
+        cells_(common_cells(base, changed, options.method)) {}
 
   json record();
 
@@ -106,7 +109,8 @@ void Comparison::add_observable(const std::string& observable, const CommonCell&
                      {"difference", change->difference.value},
                      {"error", change->difference.error},
                      {"degrees_of_freedom", std::min(change->difference.degrees_of_freedom, 1e6)},
-                     {"effect", change->effect},
+                     {"effect", change->effect()},
+                     {"share", change->is_share},
                      {"probability", change->difference.probability}},
                     change->difference.probability,
                     change});
@@ -146,17 +150,19 @@ void Comparison::judge_change(Test& test, bool significant) {
   const double detectable =
       change.effect_of(detectable_difference(change.difference, level_of_one()));
   test.record["detectable"] = detectable;
-  const bool is_large = change.effect >= options_.minimum_effect;
+  const bool is_large = change.effect() >= options_.minimum_effect;
+  const double wanted = change.is_share ? options_.wanted_effect
+                                        : std::max(options_.wanted_effect, change.base_effect());
   std::string verdict = "same";
   if (significant && is_large) {
     const bool worse = is_worse_than_before(change);
     verdict = worse ? "worse" : "better";
-    test.record["reason"] = change.growth
-                                ? fmt::format("the {} {}", change.what, worse ? "grew" : "shrank")
-                                : "changed, and nothing exact says that it may";
+    test.record["reason"] =
+        change.growth ? fmt::format("the {} {}", change.grows(), worse ? "grew" : "shrank")
+                      : "changed, and nothing exact says that it may";
   } else if (significant) {
     test.record["reason"] = "significant, but below the minimum effect";
-  } else if (detectable > options_.wanted_effect) {
+  } else if (detectable > wanted) {
     verdict = "too_little_data";
   }
   test.record["verdict"] = verdict;
@@ -226,6 +232,7 @@ json Comparison::record() {
                  {"family_level", options_.family_level},
                  {"minimum_effect", options_.minimum_effect},
                  {"wanted_effect", options_.wanted_effect},
+                 {"method", options_.method.empty() ? json() : json(options_.method)},
                  {"tests", count},
                  {"cells", std::move(records_)},
                  {"missing", identities(cells_.missing)},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "experiments/study.hpp"
 
@@ -11,6 +12,7 @@ struct CompareOptions {
   double minimum_effect = 0.001;  ///< smaller differences are "same", however sure
   double wanted_effect = 0.02;    ///< what a test must be able to see, or it has too little data
   bool all_cells = false;         ///< every cell of BASE must stand in NEW, as a gate demands
+  std::string method;             ///< this method alone; all if empty
 };
 
 /// Two results that have nothing to be compared; one sentence, exit code 2.
@@ -40,7 +42,7 @@ class NotComparable : public InputError {
 /// Carlo run, which rounding leads elsewhere on another processor) is compared by deviations from
 /// its own reference values, whose errors are counted; observables without one are left out.
 ///
-/// Effects are shares of the exact value, or of BASE's where there is none; skewnesses are numbers
+/// Effects are shares of the exact value, or of BASE's where there is none. Skewnesses are numbers
 /// of their own. A distance is taken as a distance (the root of its square). Energy drift and walk
 /// count with what they change over the measured time, in kT per particle.
 ///
@@ -51,7 +53,8 @@ class NotComparable : public InputError {
 ///   if it changed at all: what nobody can call right should not have moved.
 /// - "better": the same, where the deviation shrank.
 /// - "too_little_data": neither, and a difference of the wanted effect would have been missed with
-///   more than 5 %. `detectable` is what would not have been.
+///   more than 5 %; of what is no share of a value (drift, walk, distances, skewness) one of its
+///   own size if that is larger. `detectable` is the effect that would not have been missed.
 /// - "same": neither, and there was enough data.
 /// Total energy and momentum that BASE keeps to rounding (1e-9) and NEW does not (1e-7) are worse
 /// without a test, and the other way round better.

@@ -14,6 +14,12 @@ namespace {
 
 using nlohmann::json;
 
+/// Shares in percent, other effects as they are.
+std::string effect_text(const json& test, const char* key) {
+  const double effect = test[key];
+  return test["share"] ? percent(effect) : fmt::format("{:.2g}", effect);
+}
+
 std::string number(const json& value) { return fmt::format("{:.6g}", value.get<double>()); }
 
 /// "better" and "worse" first; of failures or conservation there is no error.
@@ -33,7 +39,7 @@ std::vector<std::string> row_of(const json& cell, const json& test) {
           measured ? fmt::format("{:+.3g} +- {:.2g}", test["difference"].get<double>(),
                                  test["error"].get<double>())
                    : "",
-          measured ? percent(test["effect"]) : "",
+          measured ? effect_text(test, "effect") : "",
           test.contains("adjusted_probability")
               ? fmt::format("{:.1e}", test["adjusted_probability"].get<double>())
               : "",
@@ -77,19 +83,22 @@ std::string counts_line(const json& counts, const char* of) {
 
 /// What each observable's tests would have found: the range over cells.
 std::string sight(const json& comparison) {
-  std::map<std::string, std::vector<double>> detectable;
+  std::map<std::string, std::pair<const json*, const json*>> ranges;  // least and most detectable
   for (const auto& cell : comparison["cells"]) {
     for (const auto& test : cell["tests"]) {
-      if (test.contains("detectable")) detectable[test["observable"]].push_back(test["detectable"]);
+      if (!test.contains("detectable")) continue;
+      auto& [least, most] = ranges.try_emplace(test["observable"], &test, &test).first->second;
+      if (test["detectable"] < (*least)["detectable"]) least = &test;
+      if (test["detectable"] > (*most)["detectable"]) most = &test;
     }
   }
   std::string text;
-  for (auto& [observable, effects] : detectable) {
-    const auto [least, most] = std::minmax_element(effects.begin(), effects.end());
-    text += fmt::format("  {:<28} {} to {}\n", observable, percent(*least), percent(*most));
+  for (const auto& [observable, range] : ranges) {
+    text += fmt::format("  {:<28} {} to {}\n", observable, effect_text(*range.first, "detectable"),
+                        effect_text(*range.second, "detectable"));
   }
   if (text.empty()) return "";
-  return "An effect of this size is found in a cell with 95 % probability, by observable:\n" + text;
+  return "Effects that a cell finds with 95 % probability, by observable:\n" + text;
 }
 
 std::string cells_line(const json& cells, const std::string& where) {

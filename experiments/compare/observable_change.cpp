@@ -20,6 +20,10 @@ constexpr double reference_degrees_of_freedom = 20;
 
 bool is_distance(const std::string& name) { return name.ends_with("_distance"); }
 
+bool is_number_of_its_own(const std::string& name) {
+  return is_distance(name) || name.ends_with("_skewness");
+}
+
 const json& entry_of(const json& cell, const std::string& observable) {
   return cell["observables"][observable];
 }
@@ -53,7 +57,7 @@ bool energies_differ(const CommonCell& cell) {
 double scale_of(const std::string& observable, const json& base, const Run& run) {
   if (observable == "energy_drift") return 1 / run.measured_time;
   if (observable == "energy_walk") return run.particles / run.measured_time;
-  if (is_distance(observable) || observable.ends_with("_skewness")) return 1;
+  if (is_number_of_its_own(observable)) return 1;
   const double size =
       std::abs(base.contains("exact") ? base["exact"].get<double>() : base["mean"].get<double>());
   return size > 0 ? size : 1;
@@ -84,6 +88,10 @@ double ObservableChange::effect_of(double size) const {
   return is_square ? std::sqrt(size / scale) : size / scale;
 }
 
+double ObservableChange::effect() const { return effect_of(std::abs(difference.value)); }
+double ObservableChange::base_effect() const { return effect_of(std::abs(base)); }
+const char* ObservableChange::grows() const { return is_share ? "deviation" : "size"; }
+
 std::optional<ObservableChange> observable_change(const std::string& observable,
                                                   const CommonCell& cell, const Run& run) {
   if (observable == "momentum_error") return std::nullopt;  // a maximum, which has no error
@@ -101,13 +109,10 @@ std::optional<ObservableChange> observable_change(const std::string& observable,
   change.difference = is_walk ? difference_of_variances(one, other) : difference(one, other);
   change.base = one.mean;
   change.changed = other.mean;
-  change.is_square = is_walk || is_distance(observable);
   change.scale = scale_of(observable, base, run);
-  change.effect = change.effect_of(std::abs(change.difference.value));
+  change.is_square = is_walk || is_distance(observable);
+  change.is_share = !is_walk && observable != "energy_drift" && !is_number_of_its_own(observable);
   change.growth = error_growth(observable, base, changed);
-  change.what = !change.growth                                     ? "value"
-                : change.is_square || observable == "energy_drift" ? "size"
-                                                                   : "deviation";
   return change;
 }
 

@@ -11,16 +11,21 @@ namespace driftless {
 
 /// How far an observable of a cell moved from BASE to NEW.
 struct ObservableChange {
-  Difference difference;  ///< in the observable's unit
-  double base, changed;   ///< measured, or deviations where scenes differ in their energy
-  double effect;          ///< the difference in the unit of effects (see compare.hpp)
-  /// What a true difference of so much, in the observable's unit, is as an effect.
-  double effect_of(double size) const;
-  double scale;  ///< effect = size/scale, or root(size/scale) of squares
-  bool is_square;
+  Difference difference;         ///< in the observable's unit
+  double base = 0, changed = 0;  ///< measured, or deviations where scenes differ in their energy
+  double scale = 1;              ///< an effect is size/scale, or root(size/scale) of squares
+  bool is_square = false;
+  bool is_share = true;  ///< whether effects are shares of a value; else numbers of their own
   /// NEW's size of the error less BASE's; nothing where nothing is known to be right.
   std::optional<double> growth;
-  std::string what;  ///< "deviation", "size", or "value": what grew
+
+  /// What a difference of so much in the observable's unit is as an effect (see compare.hpp).
+  double effect_of(double size) const;
+  double effect() const;
+  /// BASE's own number as an effect.
+  double base_effect() const;
+  /// What of it may grow or shrink: "deviation" or "size".
+  const char* grows() const;
 };
 
 /// What drifts and walks add up to.
