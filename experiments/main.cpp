@@ -97,7 +97,10 @@ void print_observables() {
 }
 
 void print_schema(const std::string& kind) {
-  fmt::print("{}\n", (kind == "study" ? study_schema() : result_schema()).dump(2));
+  const json schema = kind == "study"    ? study_schema()
+                      : kind == "result" ? result_schema()
+                                         : comparison_schema();
+  fmt::print("{}\n", schema.dump(2));
 }
 
 /// "1 scene", "2 scenes".
@@ -312,9 +315,9 @@ int main(int argc, char** argv) {
   scenes->callback([&] { print_scenes(arguments.json); });
   app.add_subcommand("observables", "list the observables")->callback(print_observables);
   auto* schema = app.add_subcommand("schema", "print the JSON Schema of a file format");
-  schema->add_option("kind", arguments.kind, "study or result")
+  schema->add_option("kind", arguments.kind, "study, result or comparison")
       ->required()
-      ->check(CLI::IsMember({"study", "result"}));
+      ->check(CLI::IsMember({"study", "result", "comparison"}));
   schema->callback([&] { print_schema(arguments.kind); });
 
   BenchArguments bench;

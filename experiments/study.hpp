@@ -52,8 +52,10 @@ nlohmann::json to_json(const Study& study);
 nlohmann::json to_json(const Scene& scene);
 nlohmann::json to_json(const Options& options);
 
-/// JSON Schemas (draft 7) of study and result files; the study's from the same table as the reader.
+/// JSON Schemas (draft 7) of study, result and comparison files; the study's from the same table as
+/// the reader.
 nlohmann::json study_schema();
 nlohmann::json result_schema();
+nlohmann::json comparison_schema();
 
 }  // namespace driftless

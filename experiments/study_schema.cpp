@@ -1,5 +1,5 @@
 #include "experiments/scene_keys.hpp"
-#include "experiments/schema/result_schema_text.hpp"
+#include "experiments/schema/schema_texts.hpp"
 #include "experiments/study_parts.hpp"
 
 namespace driftless {
@@ -36,5 +36,7 @@ json study_schema() {
 }
 
 json result_schema() { return json::parse(result_schema_text()); }
+
+json comparison_schema() { return json::parse(comparison_schema_text()); }
 
 }  // namespace driftless

@@ -65,7 +65,8 @@ class Program : public testing::Test {
 TEST_F(Program, HelpAndVersionOfEverything) {
   for (const auto* arguments :
        {"--help", "--version", "run --help", "check --help", "report --help", "recommend --help",
-        "methods --help", "scenes --help", "observables --help", "schema --help"}) {
+        "methods --help", "scenes --help", "observables --help", "schema --help", "compare --help",
+        "keep --help"}) {
     const auto outcome = call(arguments);
     EXPECT_EQ(outcome.code, 0) << arguments;
     EXPECT_FALSE(outcome.text.empty()) << arguments;
@@ -88,7 +89,7 @@ TEST_F(Program, ListsMethodsScenesObservablesAndSchemas) {
     EXPECT_NE(scenes.find(std::string("  ") + key), std::string::npos) << key;
   }
   EXPECT_NE(call("observables").text.find("internal_energy_variance"), std::string::npos);
-  for (const auto* kind : {"study", "result"}) {
+  for (const auto* kind : {"study", "result", "comparison"}) {
     EXPECT_TRUE(json::parse(call(std::string("schema ") + kind).text).contains("$schema")) << kind;
   }
 }
@@ -96,7 +97,7 @@ TEST_F(Program, ListsMethodsScenesObservablesAndSchemas) {
 TEST_F(Program, WrongUseEndsWithTwo) {
   for (const auto* arguments :
        {"", "nonsense", "run", "schema", "schema nonsense", "run a b c",
-        "run study.json --threads 0", "recommend", "recommend --budget 1"}) {
+        "run study.json --threads 0", "recommend", "recommend --budget 1", "compare one"}) {
     EXPECT_EQ(call(arguments).code, 2) << arguments;
   }
 }
@@ -198,6 +199,42 @@ TEST_F(Program, RecommendReadsWhatRunWrote) {
   const auto bad = call("recommend " + output + " --tolerance much");
   EXPECT_EQ(bad.code, 2);
   EXPECT_EQ(std::count(bad.text.begin(), bad.text.end(), '\n'), 1) << bad.text;
+}
+
+TEST_F(Program, CompareEndsWithWhatItFound) {
+  const auto before = (folder_ / "before").string(), after = (folder_ / "after").string();
+  ASSERT_EQ(call("run -q " + good_study() + " -o " + before).code, 0);
+  ASSERT_EQ(call("run -q --seed 99 " + good_study() + " -o " + after).code, 0);
+  const auto kept = (folder_ / "kept.json").string(), record = (folder_ / "record.json").string();
+  ASSERT_EQ(call("keep " + before + " " + kept).code, 0);
+  const auto same = call("compare --gate --json " + record + " " + kept + " " + after);
+  EXPECT_EQ(same.code, 0) << same.text;
+  EXPECT_NE(same.text.find("NEW is the same as BASE, at a family level of 1e-05"),
+            std::string::npos)
+      << same.text;
+  std::ifstream file(record);
+  EXPECT_EQ(json::parse(file)["verdict"], "same");
+  std::ifstream text(kept);
+  json changed = json::parse(text);
+  for (auto& cell : changed["cells"]) {
+    auto& entry = cell["observables"]["kinetic_temperature"];
+    entry["mean"] = 2 * entry["mean"].get<double>();
+    entry["error"] = 1e-6;
+    entry.erase("degrees_of_freedom");
+  }
+  const auto sure = write("sure.json", changed.dump());
+  for (auto& cell : changed["cells"]) {
+    auto& entry = cell["observables"]["kinetic_temperature"];
+    entry["mean"] = 2 * entry["mean"].get<double>();
+  }
+  const auto worse = write("worse.json", changed.dump());
+  EXPECT_EQ(call("compare --gate " + sure + " " + worse).code, 1);
+  EXPECT_EQ(call("compare " + sure + " " + worse).code, 0) << "no gate";
+  changed["cells"].erase(0);
+  const auto fewer = call("compare --gate " + kept + " " + write("fewer.json", changed.dump()));
+  EXPECT_EQ(fewer.code, 2);
+  EXPECT_NE(fewer.text.find("NEW lacks 1 of the 4 cells of BASE"), std::string::npos) << fewer.text;
+  EXPECT_EQ(call("compare " + kept + " " + good_study()).code, 2) << "a study is no result";
 }
 
 TEST_F(Program, AnInterruptedRunSaysWhatIsFinishedAndHowItGoesOn) {

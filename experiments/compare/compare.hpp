@@ -12,7 +12,7 @@ struct CompareOptions {
   double minimum_effect = 0.001;  ///< smaller differences are "same", however sure
   double wanted_effect = 0.02;    ///< what a test must be able to see, or it has too little data
   bool all_cells = false;         ///< every cell of BASE must stand in NEW, as a gate demands
-  std::string method;             ///< this method alone; all if empty
+  std::string method = {};        ///< this method alone; all if empty
 };
 
 /// Two results that have nothing to be compared; one sentence, exit code 2.
