@@ -21,10 +21,10 @@ class MetropolizedSplitting : public Integrator {
       : proposal_(proposal), symmetric_(symmetric) {}
 
   void step(System& system, double dt) override {
-    if (symmetric_) sweep(system, dt / 2, {.stage = 0, .uniforms = true});
+    if (symmetric_) sweep(system, dt / 2, {.stage = {0, 2}, .uniforms = true});
     velocity_verlet(system, dt);
     if (symmetric_) {
-      sweep(system, dt / 2, {.order = SweepOrder::reverse, .stage = 1, .uniforms = true});
+      sweep(system, dt / 2, {.order = SweepOrder::reverse, .stage = {1, 2}, .uniforms = true});
     } else {
       sweep(system, dt, {.stage = 0, .uniforms = true});
     }

@@ -77,7 +77,7 @@ Transfer<V> shardlow_exchange(const Fluid& fluid, const Pair<V>& pair, double dt
 }
 
 /// All pairs one after the other over dt.
-inline void shardlow_sweep(System& system, double dt, SweepOrder order, unsigned stage,
+inline void shardlow_sweep(System& system, double dt, SweepOrder order, Stage stage,
                            const ShardlowChoices& choices) {
   const Fluid& fluid = system.fluid();
   const Sweep how{.order = order,

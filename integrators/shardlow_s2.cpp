@@ -15,9 +15,9 @@ class ShardlowS2 : public Integrator {
   explicit ShardlowS2(const ShardlowChoices& choices) : choices_(choices) {}
 
   void step(System& system, double dt) override {
-    shardlow_sweep(system, dt / 2, SweepOrder::forward, 0, choices_);
+    shardlow_sweep(system, dt / 2, SweepOrder::forward, {0, 2}, choices_);
     velocity_verlet(system, dt);
-    shardlow_sweep(system, dt / 2, SweepOrder::reverse, 1, choices_);
+    shardlow_sweep(system, dt / 2, SweepOrder::reverse, {1, 2}, choices_);
   }
 
  private:

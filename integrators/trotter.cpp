@@ -17,9 +17,9 @@ namespace {
 class Trotter : public Integrator {
  public:
   void step(System& system, double dt) override {
-    sweep(system, dt / 2, {.order = SweepOrder::forward, .stage = 0});
+    sweep(system, dt / 2, {.order = SweepOrder::forward, .stage = {0, 2}});
     system.move(dt);
-    sweep(system, dt / 2, {.order = SweepOrder::reverse, .stage = 1});
+    sweep(system, dt / 2, {.order = SweepOrder::reverse, .stage = {1, 2}});
   }
 
  private:

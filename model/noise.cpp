@@ -1,5 +1,7 @@
 #include "model/noise.hpp"
 
+#include <stdexcept>
+
 namespace driftless {
 namespace {
 
@@ -27,6 +29,11 @@ Noise::Noise(std::uint64_t seed, std::uint64_t replica) {
        static_cast<std::uint32_t>(replica), static_cast<std::uint32_t>(replica >> 32)}};
   const auto mixed = Philox{}(counter, Philox::key_type{{0x64726966U, 0x746c6573U}});
   key_ = {{mixed[0], mixed[1]}};
+}
+
+void Noise::set_refinement(unsigned cells) {
+  if (cells == 0) throw std::invalid_argument("a step of noise has no cells");
+  cells_ = cells;
 }
 
 Noise::Philox::ctr_type Noise::counter(std::uint32_t id_i, std::uint32_t id_j, unsigned stage,

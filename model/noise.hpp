@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "model/stage.hpp"
+
 namespace driftless {
 
 /// What a random number is for; numbers of different purposes are independent.
@@ -60,33 +62,43 @@ class Noise {
   void set_step(std::uint64_t step) { step_ = step; }
   std::uint64_t step() const { return step_; }
 
+  /// Cuts every step, counted from 1, into `cells` cells of one Wiener path: the normals of step n
+  /// are the sum of those of steps (n - 1) `cells` + 1 to n `cells`, divided by the root of
+  /// `cells`. Runs of the same duration then see the same path, with steps of however many cells,
+  /// by whatever method. A stage that is a part of its step (stage.hpp) has the cells of that part
+  /// alone, so the parts must divide `cells`, else normals throw std::invalid_argument; stages that
+  /// are no parts have paths of their own. Uniform variates stay as they are. 1 is the noise
+  /// without refinement, where parts have nothing in common with a path; any other number costs so
+  /// many draws. Throws std::invalid_argument at 0.
+  void set_refinement(unsigned cells);
+
   /// Independent standard normal variates of the pairs (id_i[n], id_j[n]), n < `count`, in a stage
-  /// (0 to 255) of the present step, by the method of Box and Muller (Ann. Math. Stat. 29, 610,
+  /// of the present step, by the method of Box and Muller (Ann. Math. Stat. 29, 610,
   /// 1958); none is larger than 8.6. A purpose that is a null pointer is not wanted, which changes
   /// nothing for the other one; nor does the place of a pair in the arrays. Lanes know no
   /// remainder: all arrays are read and written up to the next multiple of the library's
   /// (lanes_of_library()). Machines with and without fused multiply-add differ in rounding.
   void pair_normals(std::size_t count, const std::uint32_t* id_i, const std::uint32_t* id_j,
-                    unsigned stage, double* friction, double* heat) const;
+                    Stage stage, double* friction, double* heat) const;
 
   /// Uniform variates of pairs in (0, 1), independent of each other and of the normals; the
   /// arrays are those of pair_normals().
   void pair_uniforms(std::size_t count, const std::uint32_t* id_i, const std::uint32_t* id_j,
-                     unsigned stage, double* friction, double* heat) const;
+                     Stage stage, double* friction, double* heat) const;
 
   /// Two standard normal variates of a pair, `friction` and `heat`.
   struct PairNormals {
     double friction, heat;
   };
   /// The normals of one pair; a purpose not wanted reads 0.
-  PairNormals pair_normals(std::uint32_t id_i, std::uint32_t id_j, unsigned stage,
-                           bool want_friction, bool want_heat) const;
+  PairNormals pair_normals(std::uint32_t id_i, std::uint32_t id_j, Stage stage, bool want_friction,
+                           bool want_heat) const;
 
   /// The uniform variates of one pair.
   struct PairUniforms {
     double friction, heat;
   };
-  PairUniforms pair_uniforms(std::uint32_t id_i, std::uint32_t id_j, unsigned stage) const;
+  PairUniforms pair_uniforms(std::uint32_t id_i, std::uint32_t id_j, Stage stage) const;
 
   /// The stream of one particle for a purpose (initial states): step 0 is before the first step.
   NoiseStream particle_stream(std::uint32_t id, Purpose purpose) const;
@@ -98,6 +110,7 @@ class Noise {
 
   Philox::key_type key_;
   std::uint64_t step_ = 0;
+  unsigned cells_ = 1;  ///< of a step
 };
 
 }  // namespace driftless

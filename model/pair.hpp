@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "model/lanes.hpp"
+#include "model/stage.hpp"
 
 namespace driftless {
 
@@ -65,7 +66,7 @@ enum class SweepEnergies { fresh, frozen };
 struct Sweep {
   SweepOrder order = SweepOrder::forward;
   SweepSequence sequence = SweepSequence::coloured;
-  unsigned stage = 0;  ///< 0 to 255: which of a step's independent noises the pairs see
+  Stage stage = {};  ///< which of a step's independent noises the pairs see
   SweepEnergies energies = SweepEnergies::fresh;
   bool uniforms = false;  ///< whether the uniform variates are drawn
 };

@@ -1,5 +1,8 @@
 #include <Random123/philox.h>
 
+#include <cmath>
+#include <stdexcept>
+
 #include "model/lanes.hpp"
 #include "model/noise.hpp"
 
@@ -86,10 +89,23 @@ constexpr double cosine_coefficients[] = {
     -0.025806888737002202, 0.23533063012953284,     -1.335262768843447,
     4.058712126416497,     -4.934802200544676,      1.0};
 
-}  // namespace
+/// What becomes of the numbers that stand in an array.
+enum class Before { forgotten, added };
 
-void Noise::pair_normals(std::size_t count, const std::uint32_t* id_i, const std::uint32_t* id_j,
-                         unsigned stage, double* friction, double* heat) const {
+template <Before before>
+inline void put(const Lanes& numbers, double* place) {
+  if constexpr (before == Before::forgotten) {
+    numbers.store(place);
+  } else {
+    (Lanes::load(place) + numbers).store(place);
+  }
+}
+
+/// Normals by the method of Box and Muller.
+template <Before before>
+void draw_normals(std::size_t count, const std::uint32_t* id_i, const std::uint32_t* id_j,
+                  const Philox::ctr_type& counter, const Philox::key_type& key, double* friction,
+                  double* heat) {
   const auto box_muller = [=](std::size_t n, const PairWords& words) {
     // A direction in the half plane on the right; the last bit, which it does not use, decides
     // whether it is reversed.
@@ -97,24 +113,55 @@ void Noise::pair_normals(std::size_t count, const std::uint32_t* id_i, const std
     const Lanes square = half_turns * half_turns;
     const Lanes sign = hn::BitCast(number_tag, hn::ShiftLeft<63>(words.second));
     const Lanes radius = hn::Xor(sqrt(-2.0 * log(uniform(words.first))).raw(), sign.raw());
-    if (friction) (radius * polynomial(cosine_coefficients, square)).store(friction + n);
-    if (heat) (radius * (half_turns * polynomial(sine_coefficients, square))).store(heat + n);
+    if (friction) put<before>(radius * polynomial(cosine_coefficients, square), friction + n);
+    if (heat) put<before>(radius * (half_turns * polynomial(sine_coefficients, square)), heat + n);
   };
-  for_lanes(count, id_i, id_j, counter(0, 0, stage, Purpose::friction), key_, box_muller);
+  for_lanes(count, id_i, id_j, counter, key, box_muller);
+}
+
+void scale(std::size_t count, double factor, double* numbers) {
+  for (std::size_t n = 0; numbers && n < count; n += Lanes::count()) {
+    (Lanes::load(numbers + n) * factor).store(numbers + n);
+  }
+}
+
+}  // namespace
+
+void Noise::pair_normals(std::size_t count, const std::uint32_t* id_i, const std::uint32_t* id_j,
+                         Stage stage, double* friction, double* heat) const {
+  constexpr auto purpose = Purpose::friction;
+  if (cells_ == 1) {
+    const auto own = counter(0, 0, stage.number, purpose);
+    return draw_normals<Before::forgotten>(count, id_i, id_j, own, key_, friction, heat);
+  }
+  if (cells_ % stage.parts != 0) {
+    throw std::invalid_argument("the parts of a step do not divide the cells of its noise");
+  }
+  const unsigned cells = cells_ / stage.parts, path = stage.number / stage.parts;
+  Noise cell = *this;
+  cell.step_ = (step_ - 1) * cells_ + stage.number % stage.parts * cells;
+  for (unsigned n = 0; n < cells; ++n) {
+    ++cell.step_;
+    const auto own = cell.counter(0, 0, path, purpose);
+    const auto draw = n == 0 ? draw_normals<Before::forgotten> : draw_normals<Before::added>;
+    draw(count, id_i, id_j, own, key_, friction, heat);
+  }
+  scale(count, 1 / std::sqrt(cells), friction);
+  scale(count, 1 / std::sqrt(cells), heat);
 }
 
 void Noise::pair_uniforms(std::size_t count, const std::uint32_t* id_i, const std::uint32_t* id_j,
-                          unsigned stage, double* friction, double* heat) const {
+                          Stage stage, double* friction, double* heat) const {
   const auto uniforms = [=](std::size_t n, const PairWords& words) {
     if (friction) uniform(words.first).store(friction + n);
     if (heat) uniform(words.second).store(heat + n);
   };
-  for_lanes(count, id_i, id_j, counter(0, 0, stage, Purpose::pair_uniform), key_, uniforms);
+  for_lanes(count, id_i, id_j, counter(0, 0, stage.number, Purpose::pair_uniform), key_, uniforms);
 }
 
 // One pair: the first lane.
 
-Noise::PairNormals Noise::pair_normals(std::uint32_t id_i, std::uint32_t id_j, unsigned stage,
+Noise::PairNormals Noise::pair_normals(std::uint32_t id_i, std::uint32_t id_j, Stage stage,
                                        bool want_friction, bool want_heat) const {
   const std::uint32_t i[Lanes::count()] = {id_i}, j[Lanes::count()] = {id_j};
   double friction[Lanes::count()] = {}, heat[Lanes::count()] = {};
@@ -123,7 +170,7 @@ Noise::PairNormals Noise::pair_normals(std::uint32_t id_i, std::uint32_t id_j, u
 }
 
 Noise::PairUniforms Noise::pair_uniforms(std::uint32_t id_i, std::uint32_t id_j,
-                                         unsigned stage) const {
+                                         Stage stage) const {
   const std::uint32_t i[Lanes::count()] = {id_i}, j[Lanes::count()] = {id_j};
   double friction[Lanes::count()], heat[Lanes::count()];
   pair_uniforms(1, i, j, stage, friction, heat);

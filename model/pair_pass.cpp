@@ -128,7 +128,7 @@ void PairPass::look_up_ids() {
   for (std::size_t n = 0; n < padded(count_); ++n) id_j_[n] = id[j_[n]];
 }
 
-void PairPass::draw_normals(const Noise& noise, unsigned stage) {
+void PairPass::draw_normals(const Noise& noise, Stage stage) {
   const PassClock clock(part(&PassSeconds::noise));
   if (!fluid_->fluctuates()) {
     std::fill_n(arrays_.noise, padded(count_), 0.0);
@@ -141,7 +141,7 @@ void PairPass::draw_normals(const Noise& noise, unsigned stage) {
                      fluid_->has_conduction() ? arrays_.heat_noise : nullptr);
 }
 
-void PairPass::draw_uniforms(const Noise& noise, unsigned stage) {
+void PairPass::draw_uniforms(const Noise& noise, Stage stage) {
   const PassClock clock(part(&PassSeconds::noise));
   look_up_ids();
   noise.pair_uniforms(count_, id_i_.data(), id_j_.data(), stage, arrays_.uniform,

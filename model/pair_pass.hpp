@@ -64,8 +64,8 @@ class PairPass {
             std::size_t count);
 
   void geometry();
-  void draw_normals(const Noise& noise, unsigned stage);
-  void draw_uniforms(const Noise& noise, unsigned stage);
+  void draw_normals(const Noise& noise, Stage stage);
+  void draw_uniforms(const Noise& noise, Stage stage);
   void draw_no_uniforms();
   /// Normals from and to memory that holds those of friction and `apart` further those of heat.
   void recall_normals(const double* kept, std::size_t apart);

@@ -97,13 +97,13 @@ void System::count_visit(bool noise, bool uniforms) {
   if (uniforms) counters_.random_numbers += 2 * pairs;
 }
 
-bool System::has_kept_normals(const PairBlock& block, unsigned stage) const {
+bool System::has_kept_normals(const PairBlock& block, Stage stage) const {
   return block.normals.size() == 2 * block.found.size && block.found.size > 0 &&
-         block.normals_step == noise_.step() && block.normals_stage == stage;
+         block.normals_step == noise_.step() && block.normals_stage == stage.number;
 }
 
 void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total,
-                        unsigned stage) {
+                        Stage stage) {
   find_pairs();
   gather_motion(state_, motion_);
   if (trial) gather_motion(*trial, trial_);
@@ -125,7 +125,7 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
       // An implicit method will come again.
       block.normals.resize(2 * pairs);
       block.normals_step = noise_.step();
-      block.normals_stage = stage;
+      block.normals_stage = stage.number;
       pass.keep_normals(block.normals.data() + first, pairs);
     }
     pass.motion(particles, 0, count);

@@ -54,18 +54,18 @@ class System {
   PassSeconds pass_seconds() const;
 
   /// All pairs from the state as it stands: kernel(const Pair<V>&) -> Transfer<V>, summed per
-  /// particle into `total`. `stage` (0 to 255) chooses one of a step's independent noises. Kernels
+  /// particle into `total`. `stage` chooses one of a step's independent noises. Kernels
   /// are pure and called for lanes of pairs, on any thread; one that takes Pair<double> alone is
   /// called pair by pair.
   template <class Kernel>
-  void accumulate(const Kernel& kernel, Exchange& total, unsigned stage = 0) {
+  void accumulate(const Kernel& kernel, Exchange& total, Stage stage = {}) {
     accumulate(PairKernel::of(kernel), nullptr, total, stage);
   }
 
   /// The same with a trial end of the step: kernel(const Pair<V>& start, const TrialPair<V>& end),
   /// both at the present positions and with the same noise. For implicit methods.
   template <class Kernel>
-  void accumulate(const Motion& trial, const Kernel& kernel, Exchange& total, unsigned stage = 0) {
+  void accumulate(const Motion& trial, const Kernel& kernel, Exchange& total, Stage stage = {}) {
     accumulate(PairKernel::of_trial(kernel), &trial, total, stage);
   }
 
@@ -114,7 +114,7 @@ class System {
   void set_state(State state);
 
  private:
-  void accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total, unsigned stage);
+  void accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total, Stage stage);
   void sweep(const PairKernel& kernel, const Sweep& how);
   void sweep_groups(PairPass& pass, const PairGroups& groups, const PassParticles& particles,
                     const PairKernel& kernel, const Sweep& how, std::vector<std::uint32_t>& failed);
@@ -129,7 +129,7 @@ class System {
   void forget_sums();
   /// Hands out the sums and leaves zeros.
   void scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy);
-  bool has_kept_normals(const PairBlock& block, unsigned stage) const;
+  bool has_kept_normals(const PairBlock& block, Stage stage) const;
   void gather_motion(const Motion& motion, std::vector<Quadruple>& gathered) const;
   void count_visit(bool noise, bool uniforms);
   void renew_conservative();

@@ -34,7 +34,7 @@ std::size_t padded(std::size_t count) {
   return (count + lanes - 1) / lanes * lanes;
 }
 
-using Batch = void (Noise::*)(std::size_t, const std::uint32_t*, const std::uint32_t*, unsigned,
+using Batch = void (Noise::*)(std::size_t, const std::uint32_t*, const std::uint32_t*, Stage,
                               double*, double*) const;
 constexpr Batch normals = &Noise::pair_normals, uniforms = &Noise::pair_uniforms;
 
@@ -222,6 +222,105 @@ TEST(PairNoise, IsNotTheNoiseOfAnyParticle) {
       }
     }
   }
+}
+
+// ---- Refinement: one Wiener path for steps of any size. -----------------------------------------
+
+Noise refined(unsigned cells, std::uint64_t step) {
+  Noise noise(1, 2);
+  noise.set_refinement(cells);
+  noise.set_step(step);
+  return noise;
+}
+
+/// Sums over `count` cells from `first` on, by their own noise, divided by the root of `count`.
+Numbers sum_of_cells(const Names& names, std::uint64_t first, unsigned count, unsigned stage) {
+  Numbers sum{std::vector<double>(names.i.size()), std::vector<double>(names.i.size())};
+  for (unsigned cell = 0; cell < count; ++cell) {
+    const auto numbers = draw(normals, refined(1, first + cell), names, stage);
+    for (std::size_t n = 0; n < names.i.size(); ++n) {
+      sum.friction[n] += numbers.friction[n] / std::sqrt(count);
+      sum.heat[n] += numbers.heat[n] / std::sqrt(count);
+    }
+  }
+  return sum;
+}
+
+double distance(const Numbers& one, const Numbers& other) {
+  double largest = 0;
+  for (std::size_t n = 0; n < one.friction.size(); ++n) {
+    largest = std::max({largest, std::abs(one.friction[n] - other.friction[n]),
+                        std::abs(one.heat[n] - other.heat[n])});
+  }
+  return largest;
+}
+
+TEST(RefinedNoise, OfAStepIsTheSumOfItsCells) {
+  const auto names = any_names(100, 3);
+  for (const unsigned stage : {0U, 1U, 5U}) {
+    const auto expected = sum_of_cells(names, 13, 6, stage);
+    EXPECT_LE(distance(draw(normals, refined(6, 3), names, stage), expected), 1e-14);
+    EXPECT_GT(distance(draw(normals, refined(6, 4), names, stage), expected), 1);
+  }
+}
+
+TEST(RefinedNoise, OfAPartIsTheSumOfThePartsCells) {
+  const auto names = any_names(100, 3);
+  const auto part = [&](Batch batch, Stage stage) {
+    Noise noise = refined(6, 3);
+    Numbers numbers{std::vector<double>(padded(100)), std::vector<double>(padded(100))};
+    Names lanes = names;
+    lanes.i.resize(padded(100));
+    lanes.j.resize(padded(100));
+    (noise.*batch)(100, lanes.i.data(), lanes.j.data(), stage, numbers.friction.data(),
+                   numbers.heat.data());
+    numbers.friction.resize(100);
+    numbers.heat.resize(100);
+    return numbers;
+  };
+  EXPECT_LE(distance(part(normals, {0, 2}), sum_of_cells(names, 13, 3, 0)), 1e-14);
+  EXPECT_LE(distance(part(normals, {1, 2}), sum_of_cells(names, 16, 3, 0)), 1e-14);
+  EXPECT_LE(distance(part(normals, {2, 3}), sum_of_cells(names, 17, 2, 0)), 1e-14);
+  EXPECT_LE(distance(part(normals, {3, 2}), sum_of_cells(names, 16, 3, 1)), 1e-14);
+  EXPECT_THROW(part(normals, {0, 4}), std::invalid_argument);
+  EXPECT_THROW(Noise(1, 2).set_refinement(0), std::invalid_argument);
+  EXPECT_EQ(part(uniforms, {1, 2}), draw(uniforms, refined(1, 3), names, 1));
+}
+
+TEST(RefinedNoise, IsTheSameNoiseWhereAStepIsOneCell) {
+  const auto names = any_names(100, 3);
+  Noise plain(1, 2);
+  plain.set_step(7);
+  EXPECT_EQ(draw(normals, refined(1, 7), names, 3), draw(normals, plain, names, 3));
+}
+
+// The sum over a path's steps is the same, however they are cut.
+TEST(RefinedNoise, HasOnePathForAllSteps) {
+  const auto names = any_names(50, 4);
+  const auto path = [&](unsigned cells) {
+    Numbers sum{std::vector<double>(50), std::vector<double>(50)};
+    for (std::uint64_t step = 1; step <= 24 / cells; ++step) {
+      const auto numbers = draw(normals, refined(cells, step), names);
+      for (std::size_t n = 0; n < 50; ++n) {
+        sum.friction[n] += std::sqrt(cells) * numbers.friction[n];
+        sum.heat[n] += std::sqrt(cells) * numbers.heat[n];
+      }
+    }
+    return sum;
+  };
+  for (const unsigned cells : {2U, 3U, 8U, 24U}) {
+    EXPECT_LE(distance(path(cells), path(1)), 1e-13) << cells;
+  }
+}
+
+TEST(RefinedNoise, IsNormal) {
+  Names names;
+  for (std::uint32_t i = 0; i < 100000; ++i) {
+    names.i.push_back(i);
+    names.j.push_back(i + 1);
+  }
+  const auto numbers = draw(normals, refined(4, 1), names);
+  EXPECT_TRUE(is_normal(numbers.friction) && is_normal(numbers.heat));
 }
 
 // ---- Laws of a million pairs, by name of what is broken. ----------------------------------------
