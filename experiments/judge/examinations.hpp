@@ -6,6 +6,8 @@
 #define DRIFTLESS_EXAMINATIONS(EXAMINATION) \
   EXAMINATION(invariants)                   \
   EXAMINATION(galilean)                     \
+  EXAMINATION(orders)                       \
+  EXAMINATION(common_noise)                 \
   EXAMINATION(drift)
 
 namespace driftless::judge {
