@@ -11,8 +11,10 @@
 namespace driftless {
 namespace {
 
-std::string subject(const std::string& observable) {
+std::string subject(const Choice& choice) {
+  const std::string& observable = choice.observable;
   if (observable == equilibrium_observable) {
+    if (choice.isothermal) return "the kinetic temperature";
     return "temperatures and the variance of the internal energy";
   }
   std::string words = observable;
@@ -78,7 +80,7 @@ std::string cost_text(double core_seconds_per_time) {
 
 std::string tolerance_clause(const Choice& cheapest, double tolerance) {
   std::string text =
-      fmt::format("For {}, to have {} within {}: ", cheapest.scene, subject(cheapest.observable),
+      fmt::format("For {}, to have {} within {}: ", cheapest.scene, subject(cheapest),
                   tolerance_text(cheapest.observable, tolerance));
   if (cheapest.ranked.empty()) {
     text += nothing(cheapest);
@@ -113,7 +115,7 @@ std::string budget_clause(const Choice& most_accurate, double budget,
   const std::string& observable = most_accurate.observable;
   std::string text =
       fmt::format("For {}, to have {} as accurate as {} allow: ", most_accurate.scene,
-                  subject(observable), cost_text(budget));
+                  subject(most_accurate), cost_text(budget));
   if (most_accurate.ranked.empty()) {
     text += most_accurate.cells_compared > 0 ? "no method and step of this study costs so little"
                                              : nothing(most_accurate);

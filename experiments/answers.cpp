@@ -21,14 +21,17 @@ constexpr double rounding = 1e-12;  // a deviation below it has no order
 const std::vector<std::string> equilibrium_parts = {"kinetic_temperature", "internal_temperature",
                                                     "internal_energy_variance"};
 
-std::vector<std::string> parts_of(const std::string& observable) {
-  return observable == equilibrium_observable ? equilibrium_parts : std::vector{observable};
+bool is_isothermal(const json& cell) { return cell.value("isothermal", false); }
+
+std::vector<std::string> parts_of(const json& cell, const std::string& observable) {
+  if (observable != equilibrium_observable) return {observable};
+  return is_isothermal(cell) ? std::vector{equilibrium_parts.front()} : equilibrium_parts;
 }
 
 /// The largest `key` of a cell's deviations in an observable's parts, if it has all of them.
 std::optional<double> largest(const json& cell, const std::string& observable, const char* key) {
   double result = 0;
-  for (const auto& part : parts_of(observable)) {
+  for (const auto& part : parts_of(cell, observable)) {
     const auto entry = cell["observables"].find(part);
     if (entry == cell["observables"].end() || !entry->contains("deviation")) return std::nullopt;
     const auto number = (*entry)["deviation"].find(key);
@@ -55,10 +58,11 @@ struct Field {
 };
 
 Field field_of(const SceneCells& cells, const std::string& scene, const std::string& observable) {
-  Field field{{scene, observable, {}, std::nullopt, 0, std::nullopt, false}, {}};
+  Field field{{scene, observable, {}, std::nullopt, 0, std::nullopt, false, false}, {}};
   auto& [choice, candidates] = field;
   bool any_ran = false, any_exact = false;
   for (const json* cell : cells) {
+    choice.isothermal = choice.isothermal || is_isothermal(*cell);
     any_ran = any_ran || (*cell)["status"] == "ok";
     any_exact = any_exact || largest(*cell, observable, "value");
     const auto bound = largest(*cell, observable, "bound");
@@ -133,6 +137,15 @@ json answer(const Field& field, double tolerance) {
     entry["cheaper_inconsistent"] = to_json(*other);
   }
   return entry;
+}
+
+/// Whether an observable is one of a scene at all: those of internal energies are not where there
+/// are none.
+bool is_of_scene(const SceneCells& cells, const std::string& observable) {
+  return observable == equilibrium_observable ||
+         std::any_of(cells.begin(), cells.end(), [&](const json* cell) {
+           return !is_isothermal(*cell) || (*cell)["observables"].contains(observable);
+         });
 }
 
 json orders_of(const SceneCells& cells, const std::string& scene, const std::string& observable) {
@@ -222,6 +235,7 @@ void add_answers(json& result) {
     const std::string scene = record["name"];
     const SceneCells cells = cells_of(result, scene);
     for (const auto& observable : observables) {
+      if (!is_of_scene(cells, observable)) continue;
       for (auto& order : orders_of(cells, scene, observable)) {
         result["orders"].push_back(std::move(order));
       }

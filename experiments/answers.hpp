@@ -8,7 +8,7 @@
 namespace driftless {
 
 /// The name that stands for the worst of kinetic temperature, internal temperature and variance of
-/// the internal energy.
+/// the internal energy; in an isothermal scene for the kinetic temperature, the only one there is.
 inline constexpr const char* equilibrium_observable = "equilibrium";
 
 /// A cell that an answer can name.
@@ -35,6 +35,7 @@ struct Choice {
   std::optional<double> resolution;
   /// Cells ran to their end, but what they measured has no exact value to compare with.
   bool lacks_exact_value = false;
+  bool isothermal = false;  ///< the scene has no internal energies
 };
 
 /// The cheapest cells whose bound is within the tolerance. A cell is compared if no replica failed

@@ -2,18 +2,24 @@
 
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>
+#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 namespace driftless {
 namespace {
 
+void check(std::size_t bins) {
+  if (bins < 2) throw std::invalid_argument("a binned law needs two bins");
+}
+
 void check(double a, double b, std::size_t bins) {
   if (!(a > 0.0) || !(b > 0.0) || !std::isfinite(a) || !std::isfinite(b)) {
     throw std::invalid_argument("a Beta law needs two positive shapes");
   }
-  if (bins < 2) throw std::invalid_argument("a binned law needs two bins");
+  check(bins);
 }
 
 }  // namespace
@@ -41,6 +47,21 @@ BinnedLaw BinnedLaw::signed_root(double b, std::size_t bins) {
     const double edge = i == 0          ? 1.0
                         : 2 * i == bins ? 0.0
                                         : std::sqrt(boost::math::ibetac_inv(0.5, b, outside));
+    edges[i] = -edge;
+    edges[bins - i] = edge;
+  }
+  return BinnedLaw(std::move(edges));
+}
+
+BinnedLaw BinnedLaw::normal(std::size_t bins) {
+  check(bins);
+  std::vector<double> edges(bins + 1);
+  for (std::size_t i = 0; 2 * i <= bins; ++i) {
+    // P(|x| > edge) of the two mirrored edges; exactly 0 in the middle.
+    const double outside = 2.0 * static_cast<double>(i) / static_cast<double>(bins);
+    const double edge = i == 0          ? std::numeric_limits<double>::infinity()
+                        : 2 * i == bins ? 0.0
+                                        : std::sqrt(2.0) * boost::math::erfc_inv(outside);
     edges[i] = -edge;
     edges[bins - i] = edge;
   }

@@ -19,6 +19,10 @@ class BinnedLaw {
   /// of what it could be at most. Throws as `beta`.
   static BinnedLaw signed_root(double b, std::size_t bins = 256);
 
+  /// The standard normal law: one momentum component under a bath. Its first and last edges are
+  /// infinite. Throws std::invalid_argument unless there are two bins or more.
+  static BinnedLaw normal(std::size_t bins = 256);
+
   /// Bin of a sample, from 0: edges()[bin] <= sample < edges()[bin + 1]. Samples outside the law's
   /// interval go to its end bins; one that is not a number, to bin 0.
   std::size_t bin(double sample) const;

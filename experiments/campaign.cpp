@@ -254,11 +254,21 @@ json Campaign::scene_records() const {
     json record = {{"name", prepared->scene().name},
                    {"preset", prepared->scene().preset},
                    {"parameters", scene_parameters(prepared->scene())},
-                   {"relaxation_time", finite(relaxation)},
                    {"kinetic_relaxation_time", finite(kinetic)},
-                   {"resolves_internal_energy", resolves(study_, relaxation)},
                    {"resolves_kinetic_energy", resolves(study_, kinetic)},
                    {"energy_per_particle", prepared->energy_per_particle()}};
+    if (prepared->fluid().isothermal()) {
+      if (!resolves(study_, kinetic)) {
+        record["note"] = fmt::format(
+            "kinetic energies relax in about {:.3g}: to resolve them takes equilibration of {:.3g} "
+            "and measurement of {:.3g}",
+            kinetic, 5 * kinetic, 20 * kinetic);
+      }
+      scenes.push_back(record);
+      continue;
+    }
+    record["relaxation_time"] = finite(relaxation);
+    record["resolves_internal_energy"] = resolves(study_, relaxation);
     const double longest = std::max(relaxation, std::isfinite(kinetic) ? kinetic : 0);
     if (std::isfinite(longest) && !resolves(study_, longest)) {
       record["note"] = fmt::format(
@@ -282,6 +292,7 @@ json Campaign::method_records() const {
                        {"reference", method.reference},
                        {"conserves", method.conserves},
                        {"consistent", method.consistent},
+                       {"isothermal", method.isothermal},
                        {"galilean", method.galilean}});
   }
   return records;

@@ -124,12 +124,14 @@ json counts_of(const std::vector<ReplicaResult>& replicas) {
 }
 
 json identity(const PreparedScene& prepared, const MethodChoice& choice, double time_step) {
-  return {
+  json record = {
       {"scene", prepared.scene().name},
       {"method", choice.name},
       {"options", to_json(choice.options)},
       {"time_step", time_step},
       {"consistent", is_consistent(*find_method(choice.name), choice.options, prepared.fluid())}};
+  if (prepared.fluid().isothermal()) record["isothermal"] = true;
+  return record;
 }
 
 }  // namespace
@@ -185,7 +187,9 @@ json cell_record(const PreparedScene& prepared, const Study& study, const Method
   if (!cell.radial_distribution.x.empty()) {
     record["curves"]["radial_distribution"] = curve_json(cell.radial_distribution);
   }
-  if (!records.empty()) record["energy_trace"] = mean_trace(records);
+  if (!records.empty() && !prepared.fluid().isothermal()) {
+    record["energy_trace"] = mean_trace(records);
+  }
   record["cost"] = counts_of(replicas);
   return record;
 }

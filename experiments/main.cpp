@@ -59,6 +59,7 @@ void print_methods() {
     fmt::print("  order: {} (noise-free {}){}{}\n", method->weak_order, method->noise_free_order,
                method->consistent ? "" : "; not consistent with the model",
                method->galilean ? "" : "; depends on the observer's velocity");
+    if (method->isothermal) fmt::print("  isothermal scenes: yes\n");
     for (const auto& option : method->options) {
       fmt::print("  option {} (default {}): {}\n", option.name, option_text(option.fallback),
                  option.meaning);

@@ -24,6 +24,9 @@ struct Derivation {
 };
 
 bool always(const PreparedScene& prepared) { return prepared.fluid().fluctuates(); }
+bool has_internal_energies(const PreparedScene& prepared) {
+  return prepared.fluid().fluctuates() && !prepared.fluid().isothermal();
+}
 bool has_kinetic_law(const PreparedScene& prepared) {
   return prepared.law() && prepared.law()->degrees > 0;
 }
@@ -35,14 +38,8 @@ bool is_fluid(const PreparedScene& prepared) {
          prepared.fluid().fluctuates();
 }
 
-double kinetic_degrees(const PreparedScene& prepared) {
-  return prepared.scene().layout == Layout::pairs
-             ? 1
-             : 3 * (static_cast<double>(prepared.scene().particles) - 1);
-}
-
 double kinetic_temperature(const PreparedScene& prepared, const Means& m) {
-  return 2 * m[0] / (kinetic_degrees(prepared) * prepared.fluid().boltzmann());
+  return 2 * m[0] / (prepared.kinetic_degrees() * prepared.fluid().boltzmann());
 }
 
 double variance(const Means& m) { return m[1] - m[0] * m[0]; }
@@ -52,7 +49,7 @@ const std::vector<Derivation>& derivations() {
   static const std::vector<Derivation> all = {
       {"kinetic_temperature", always, {Primary::kinetic}, kinetic_temperature},
       {"internal_temperature",
-       always,
+       has_internal_energies,
        {Primary::inverse_temperature},
        [](const P&, const Means& m) { return 1 / m[0]; }},
       {"configurational_temperature",
@@ -60,15 +57,15 @@ const std::vector<Derivation>& derivations() {
        {Primary::squared_force, Primary::laplacian},
        [](const P& p, const Means& m) { return m[0] / (p.fluid().boltzmann() * m[1]); }},
       {"internal_energy_mean",
-       always,
+       has_internal_energies,
        {Primary::energy_1},
        [](const P&, const Means& m) { return m[0]; }},  // the offset is added in evaluate
       {"internal_energy_variance",
-       always,
+       has_internal_energies,
        {Primary::energy_1, Primary::energy_2},
        [](const P&, const Means& m) { return variance(m); }},
       {"internal_energy_skewness",
-       always,
+       has_internal_energies,
        {Primary::energy_1, Primary::energy_2, Primary::energy_3},
        [](const P&, const Means& m) {
          // Energies all alike but for rounding have no skewness: not a number, so left out.
@@ -133,18 +130,21 @@ void add_distributions(const PreparedScene& prepared, const std::vector<Record>&
                        CellObservables& cell) {
   if (!prepared.distributions()) return;
   const auto& exact = *prepared.distributions();
-  const auto energies = gather(records, [](const Record& r) { return r.internal_energy_blocks; });
-  cell.observed.push_back({"internal_energy_distance", distribution_distance(energies),
-                           prepared.reference("internal_energy_distance")});
   const double unit = prepared.energy_unit(), e = prepared.island_energy();
-  cell.internal_energy = rescaled(display_histogram(exact.internal_energy, energies), e / unit);
-  if (prepared.law()->degrees == 0) return;
+  if (exact.internal_energy) {
+    const auto energies = gather(records, [](const Record& r) { return r.internal_energy_blocks; });
+    cell.observed.push_back({"internal_energy_distance", distribution_distance(energies),
+                             prepared.reference("internal_energy_distance")});
+    cell.internal_energy = rescaled(display_histogram(*exact.internal_energy, energies), e / unit);
+  }
+  const bool isothermal = prepared.fluid().isothermal();
+  if (!isothermal && prepared.law()->degrees == 0) return;
   const auto momenta = gather(records, [](const Record& r) { return r.momentum_blocks; });
   cell.observed.push_back({"momentum_distance", distribution_distance(momenta),
                            prepared.reference("momentum_distance")});
-  const double islanders = static_cast<double>(prepared.law()->particles);
-  cell.momentum = rescaled(display_histogram(exact.momentum, momenta),
-                           std::sqrt(2 * e * (1 - 1 / islanders) / unit));
+  const double islanders = static_cast<double>(prepared.island_size());
+  const double spread = isothermal ? 1 - 1 / islanders : 2 * e * (1 - 1 / islanders) / unit;
+  cell.momentum = rescaled(display_histogram(exact.momentum, momenta), std::sqrt(spread));
 }
 
 Histogram radial_distribution(const PreparedScene& prepared, const std::vector<Record>& records) {
@@ -256,6 +256,25 @@ const ObservableSpec& observable_spec(std::string_view name) {
   return *std::find_if(specs.begin(), specs.end(), [&](const auto& s) { return s.name == name; });
 }
 
+namespace {
+
+void add_energy_drift(const PreparedScene& prepared, const std::vector<Record>& records,
+                      CellObservables& cell) {
+  std::vector<EnergyTrace> traces;
+  for (const auto& record : records) traces.push_back(record.energy);
+  cell.drift = energy_drift(traces);
+  cell.observed.push_back({"energy_drift", cell.drift.slope, Reference{0, 0}});
+  // Energies are per particle: their walk's variance is N times smaller than that of a particle.
+  const double n = static_cast<double>(prepared.scene().particles);
+  const auto& walk = cell.drift.walk;
+  cell.observed.push_back({"energy_walk",
+                           {walk.value * n, walk.error * n, walk.effective_increments, false},
+                           std::nullopt,
+                           {{walk.lower * n, walk.upper * n}}});
+}
+
+}  // namespace
+
 CellObservables evaluate(const PreparedScene& prepared, const std::vector<Record>& records,
                          const std::vector<unsigned>& replicas) {
   CellObservables cell;
@@ -273,17 +292,7 @@ CellObservables evaluate(const PreparedScene& prepared, const std::vector<Record
     cell.observed.push_back(observed);
   }
   if (prepared.fluid().fluctuates()) add_distributions(prepared, records, cell);
-  std::vector<EnergyTrace> traces;
-  for (const auto& record : records) traces.push_back(record.energy);
-  cell.drift = energy_drift(traces);
-  cell.observed.push_back({"energy_drift", cell.drift.slope, Reference{0, 0}});
-  // Energies are per particle: their walk's variance is N times smaller than that of a particle.
-  const double n = static_cast<double>(prepared.scene().particles);
-  const auto& walk = cell.drift.walk;
-  cell.observed.push_back({"energy_walk",
-                           {walk.value * n, walk.error * n, walk.effective_increments, false},
-                           std::nullopt,
-                           {{walk.lower * n, walk.upper * n}}});
+  if (!prepared.fluid().isothermal()) add_energy_drift(prepared, records, cell);
   cell.observed.push_back({"momentum_error", largest_momentum_error(records), std::nullopt});
   cell.radial_distribution = radial_distribution(prepared, records);
   compare_off_equilibrium(prepared, records, replicas, cell);

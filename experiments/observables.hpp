@@ -36,7 +36,8 @@ struct Record {
 
 /// Records the primary quantities of a running system. Kinetic and internal energies are taken as
 /// shares of their present sum, scaled to the sum at the start: an integrator's drift of energy is
-/// one observable and does not show in all the others. With a potential they are taken as they are.
+/// one observable and does not show in all the others. With a potential, or with a bath, they are
+/// taken as they are.
 class Sampler {
  public:
   static constexpr std::size_t blocks = 8;           ///< stretches of time per replica
@@ -79,7 +80,8 @@ struct Observed {
   std::optional<std::pair<double, double>> interval = {};  ///< 95 %, where it is not symmetric
 };
 
-/// Everything that the records of a cell's surviving replicas give.
+/// Everything that the records of a cell's surviving replicas give. What depends on internal energies
+/// is absent from an isothermal scene, and so are drift and walk of its energy, which a bath changes.
 struct CellObservables {
   std::vector<Observed> observed;
   EnergyDrift drift;

@@ -39,8 +39,10 @@ PreparedScene::PreparedScene(const Scene& scene, std::uint64_t seed, unsigned re
       seed_(seed),
       replicas_(replicas) {
   find_law();
-  const bool drawn = scene_.initial_state == InitialState::microcanonical;
-  if (fluid_.has_repulsion() && fluid_.fluctuates() && drawn) {
+  const bool drawn = starts_in_law(scene_);
+  if (fluid_.isothermal()) {
+    prepare_isothermal();
+  } else if (fluid_.has_repulsion() && fluid_.fluctuates() && drawn) {
     prepare_with_repulsion();
   } else {
     prepare_ideal();
@@ -52,6 +54,11 @@ double PreparedScene::energy_unit() const {
   return thermal > 0 ? thermal : 1;
 }
 
+double PreparedScene::thermal_kinetic_energy() const {
+  const double islands = static_cast<double>(scene_.particles / island_size());
+  return 0.5 * kinetic_degrees() * islands * fluid_.boltzmann() * scene_.fluid.temperature;
+}
+
 void PreparedScene::find_law() {
   if (!fluid_.fluctuates()) return;
   auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
@@ -59,6 +66,10 @@ void PreparedScene::find_law() {
   // friction, in few fixed directions, keeps combinations of momenta; without friction nothing ties
   // the kinetic energy to the internal energies.
   if (scene_.frozen && scene_.layout == Layout::fluid && fluid_.has_friction()) return;
+  if (fluid_.isothermal()) {
+    if (fluid_.has_friction()) distributions_ = {BinnedLaw::normal(), std::nullopt};
+    return;
+  }
   if (fluid_.has_friction() && (law.particles >= 3 || fluid_.has_conduction())) {
     law_ = law;
   } else if (!fluid_.has_friction() && fluid_.has_conduction()) {
@@ -139,6 +150,57 @@ void PreparedScene::prepare_with_repulsion() {
   if (law_ && law_->degrees > 0) reference_from_chain(samples);
 }
 
+/// Whatever the start, the bath leads to its own temperature, exactly.
+void PreparedScene::prepare_isothermal() {
+  const double thermal = fluid_.boltzmann() * scene_.fluid.temperature;
+  const double ideal_pressure = static_cast<double>(scene_.particles) / box_.volume() * thermal;
+  if (distributions_) {
+    references_["kinetic_temperature"] = {scene_.fluid.temperature, 0};
+    references_["momentum_distance"] = {0, 0};
+    if (fluid_.has_repulsion()) {
+      references_["configurational_temperature"] = {scene_.fluid.temperature, 0};
+    } else if (scene_.layout == Layout::fluid) {
+      references_["pressure"] = {ideal_pressure, 0};
+    }
+  }
+  if (!starts_in_law(scene_)) {
+    total_energy_ = start(0).total_energy();
+    return;
+  }
+  total_energy_ = thermal_kinetic_energy() + centre_of_mass_energy(scene_);
+  if (fluid_.has_repulsion()) sample_canonical_configurations();
+}
+
+void PreparedScene::sample_canonical_configurations() {
+  const Noise numbers(seed_, ~std::uint64_t{0});  // a replica beyond any study's
+  ConfigurationChain chain(fluid_, box_,
+                           place(box_, scene_.layout, Placement::lattice, scene_.particles,
+                                 scene_.pair_distance, numbers),
+                           numbers);
+  for (int path = 0; path < relaxation_paths; ++path) chain.relax();
+  Eigen::MatrixXd potential(chain_paths, 1), pressure(chain_paths, 1);
+  const int apart = std::max(1, chain_paths / static_cast<int>(std::max(1U, replicas_)));
+  const double n = static_cast<double>(scene_.particles);
+  const double thermal = fluid_.boltzmann() * scene_.fluid.temperature;
+  for (int path = -pilot_burn_in - burn_in; path < chain_paths; ++path) {
+    chain.advance_canonical();
+    if (path < 0) continue;
+    const auto sums = configuration_sums(chain.system());
+    potential(path, 0) = sums.potential / n;
+    pressure(path, 0) = (n * thermal + sums.virial / 3) / box_.volume();
+    if (path % apart == 0) configurations_.push_back(chain.system().state());
+  }
+  while (configurations_.size() < replicas_) configurations_.push_back(chain.system().state());
+  total_energy_ += n * potential.mean();
+  if (scene_.frozen) return;  // every replica keeps a configuration of its own
+  const auto set = [&](const char* name, const Eigen::MatrixXd& samples) {
+    const auto result = estimate({samples}, [](const Eigen::VectorXd& m) { return m[0]; });
+    references_[name] = {result.mean, result.error};
+  };
+  set("potential_energy", potential);
+  set("pressure", pressure);
+}
+
 void PreparedScene::reference_of_shares() {
   references_["kinetic_share"] = {1, 0};
   references_["momentum_distance"] = {0, 0};
@@ -184,8 +246,7 @@ void PreparedScene::reference_from_chain(const Eigen::MatrixXd& samples) {
 }
 
 bool PreparedScene::starts_off_equilibrium(unsigned replica) const {
-  return scene_.initial_state == InitialState::microcanonical && replicas_ >= 2 &&
-         replica + 1 == replicas_;
+  return starts_in_law(scene_) && replicas_ >= 2 && replica + 1 == replicas_;
 }
 
 System PreparedScene::start(unsigned replica) const {
@@ -199,7 +260,11 @@ System PreparedScene::start(unsigned replica) const {
                                                                        : scene_.initial_positions,
                   scene_.particles, scene_.pair_distance, numbers)
           : configurations_[replica];
-  if (scene_.initial_state == InitialState::microcanonical) {
+  if (scene_.initial_state == InitialState::canonical) {
+    // Off equilibrium it is half as hot.
+    draw_canonical(fluid_, scene_.layout, scene_.fluid.temperature * (off ? 0.5 : 1), numbers,
+                   state);
+  } else if (scene_.initial_state == InitialState::microcanonical) {
     double energy = law.energy_at(scene_.fluid.temperature);
     if (!configurations_.empty()) {
       state.internal_energy.assign(state.size(), 1.0);

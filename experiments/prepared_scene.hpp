@@ -17,10 +17,11 @@ struct Reference {
   double error = 0;
 };
 
-/// Distributions of shares of an island's kinetic plus internal energy under the exact law.
+/// Distributions under the exact law: of shares of an island's kinetic plus internal energy e, or of
+/// velocities under a bath.
 struct ExactDistributions {
-  BinnedLaw momentum;         ///< v sqrt(m/2) / sqrt(e (1 - 1/N)), signed
-  BinnedLaw internal_energy;  ///< u/e
+  BinnedLaw momentum;  ///< v sqrt(m/2) / sqrt(e (1 - 1/N)), signed; v sqrt(m) / sqrt(k T (1 - 1/N))
+  std::optional<BinnedLaw> internal_energy;  ///< u/e
 };
 
 /// A scene made ready to run: fluid and box, the prescribed energy, starts for every replica, and
@@ -28,7 +29,8 @@ struct ExactDistributions {
 class PreparedScene {
  public:
   /// Throws std::invalid_argument if the scene cannot be set up. A fluid with repulsion costs a
-  /// Monte Carlo run (seconds) that gives the energy, the starts and the reference values.
+  /// Monte Carlo run (seconds) that gives the energy, the starts and the reference values: of the
+  /// microcanonical law, or of the canonical one if isothermal.
   PreparedScene(const Scene& scene, std::uint64_t seed, unsigned replicas);
 
   const Scene& scene() const { return scene_; }
@@ -40,7 +42,8 @@ class PreparedScene {
   bool starts_off_equilibrium(unsigned replica) const;
 
   /// The law of shares of kinetic plus internal energy, where the scene has an exact one: nothing
-  /// without friction and conduction, kinetic energy left out without friction.
+  /// without friction and conduction or without internal energies, kinetic energy left out without
+  /// friction.
   const std::optional<MicrocanonicalLaw>& law() const { return law_; }
   const std::optional<ExactDistributions>& distributions() const { return distributions_; }
   /// Exact or reference value of an observable.
@@ -49,6 +52,16 @@ class PreparedScene {
   /// Kinetic plus internal energy of an island at the start; the mean one where potential energy
   /// fluctuates.
   double island_energy() const { return island_energy_; }
+  /// Particles of an island.
+  std::size_t island_size() const {
+    return scene_.layout == Layout::pairs ? 2 : scene_.particles;
+  }
+  /// Kinetic degrees of freedom of an island.
+  double kinetic_degrees() const {
+    return scene_.layout == Layout::pairs ? 1 : 3 * (static_cast<double>(scene_.particles) - 1);
+  }
+  /// Mean kinetic energy of all islands at the scene's temperature.
+  double thermal_kinetic_energy() const;
   double energy_per_particle() const { return total_energy_ / scene_.particles; }
   /// Energy unit of drifts: k T, or 1 where k is 0.
   double energy_unit() const;
@@ -60,6 +73,8 @@ class PreparedScene {
   void find_law();
   void prepare_ideal();
   void prepare_with_repulsion();
+  void prepare_isothermal();
+  void sample_canonical_configurations();
   void reference_from_law();
   void reference_of_shares();
   void reference_from_chain(const Eigen::MatrixXd& samples);

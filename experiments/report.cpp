@@ -57,7 +57,33 @@ std::string drift_text(const json& result, const json& answer) {
   return "";
 }
 
+bool is_isothermal(const json& result, const std::string& scene) {
+  const auto& cells = result["cells"];
+  return std::any_of(cells.begin(), cells.end(), [&](const json& cell) {
+    return cell["scene"] == scene && cell.value("isothermal", false);
+  });
+}
+
+/// Why an answer table is empty, or what it says.
+std::string about_answers(bool isothermal, int compared) {
+  if (compared == 0) {
+    return isothermal
+               ? "No cell resolves the kinetic temperature against an exact value.\n"
+               : "No cell resolves kinetic temperature, internal temperature and variance of the "
+                 "internal\nenergy against exact values.\n";
+  }
+  const std::string what =
+      isothermal ? "Cheapest method and step whose kinetic temperature is\nshown to be"
+                 : "Cheapest method and step whose kinetic temperature, internal temperature and "
+                   "variance of the internal\nenergy are all shown to be";
+  return fmt::format(
+      "{} within the tolerance. The bounds of all {} cells compared hold at once, at\n{:g} % "
+      "confidence, so that the choice among them costs nothing of it:\n\n",
+      what, compared, 100 * bounds_level);
+}
+
 std::string answers_of(const json& result, const std::string& scene) {
+  const bool isothermal = is_isothermal(result, scene);
   std::vector<Row> rows;
   std::string beside, last;  // cheaper methods of another limit
   int compared = 0;
@@ -91,20 +117,15 @@ std::string answers_of(const json& result, const std::string& scene) {
         other["method"].get<std::string>(), step_text(other["time_step"]),
         other["cost"].get<double>());
   }
-  if (compared == 0)
-    return "No cell resolves kinetic temperature, internal temperature and variance "
-           "of the internal\nenergy against exact values.\n";
-  return fmt::format(
-             "Cheapest method and step whose kinetic temperature, internal temperature and "
-             "variance "
-             "of the internal\nenergy are all shown to be within the tolerance. The bounds of all "
-             "{} cells compared hold at once, at\n{:g} % confidence, so that the choice among them "
-             "costs nothing of it:\n\n",
-             compared, 100 * bounds_level) +
-         table({"tolerance", "method", "step", "wrong by at most", "core-s per unit time",
-                "energy drift, kT per particle and unit time", "runner-up"},
-               rows) +
-         beside;
+  if (compared == 0) return about_answers(isothermal, compared);
+  Row head = {"tolerance", "method", "step", "wrong by at most", "core-s per unit time",
+              "energy drift, kT per particle and unit time", "runner-up"};
+  if (isothermal) {  // energy comes and goes with the bath
+    constexpr int drift = 5;
+    head.erase(head.begin() + drift);
+    for (auto& row : rows) row.erase(row.begin() + drift);
+  }
+  return about_answers(isothermal, compared) + table(head, rows) + beside;
 }
 
 /// What a map of methods and steps says of a cell.
@@ -165,8 +186,8 @@ std::string summary(const json& result) {
     if (scene.contains("note"))
       text += fmt::format("Note: {}.\n\n", scene["note"].get<std::string>());
     text += answers_of(result, name) +
-            "\nThe largest of these errors, and in brackets what it is at most, by method and "
-            "step:\n\n" +
+            (is_isothermal(result, name) ? "\nThe error" : "\nThe largest of these errors") +
+            std::string(", and in brackets what it is at most, by method and step:\n\n") +
             map_of(result, name);
     text += "\n" + failures_of(result, name) + ".\n";
   }

@@ -32,7 +32,7 @@ Sampler::Sampler(const PreparedScene& prepared, System& system, unsigned replica
       distances_(prepared.box(), distance_range(prepared), system.size()),
       first_energy_(system.total_energy()),
       first_momentum_(system.momentum()),
-      island_size_(prepared.scene().layout == Layout::pairs ? 2 : system.size()) {
+      island_size_(prepared.island_size()) {
   const auto exact = prepared.reference("internal_energy_mean");
   mean_energy_ = exact ? exact->value : 0;
   record_.samples = Eigen::MatrixXd::Zero(samples, Primary::count);
@@ -40,7 +40,9 @@ Sampler::Sampler(const PreparedScene& prepared, System& system, unsigned replica
   if (prepared.distributions()) {
     const auto bins = prepared.distributions()->momentum.bins();
     record_.momentum_blocks = empty_blocks(replica, bins);
-    record_.internal_energy_blocks = empty_blocks(replica, bins);
+    if (prepared.distributions()->internal_energy) {
+      record_.internal_energy_blocks = empty_blocks(replica, bins);
+    }
   }
   if (distance_range(prepared) > 0) {
     record_.distance_blocks = empty_blocks(replica, distance_bins);
@@ -64,26 +66,33 @@ void Sampler::take_island(const State& state, std::size_t first, std::size_t las
                           Eigen::RowVectorXd& sums) {
   const Island whole = island(state, first, last);
   const auto& law = prepared_.law();
+  const Fluid& fluid = prepared_.fluid();
   const double energy = (law && law->degrees == 0 ? 0.0 : whole.kinetic) + whole.internal;
   const bool scaled = law && !prepared_.fluid().has_repulsion();
   const double scale = scaled ? prepared_.island_energy() / energy : 1;
   sums[Primary::kinetic] += whole.kinetic * scale;
-  sums[Primary::kinetic_share] += whole.kinetic / (whole.kinetic + whole.internal);
+  if (law) sums[Primary::kinetic_share] += whole.kinetic / (whole.kinetic + whole.internal);
   const std::size_t block = taken_ * blocks / static_cast<std::size_t>(record_.samples.rows());
   const double islanders = static_cast<double>(last - first);
-  const double momentum_scale =
-      std::sqrt(0.5 * prepared_.fluid().mass() / (energy * (1 - 1 / islanders)));
+  // Of a momentum's square: a share of twice the energy, or k T of the bath.
+  const double unit =
+      fluid.isothermal() ? fluid.boltzmann() * fluid.parameters().temperature : 2 * energy;
+  const double momentum_scale = std::sqrt(fluid.mass() / (unit * (1 - 1 / islanders)));
   const int components = prepared_.scene().layout == Layout::pairs ? 1 : 3;
   for (std::size_t i = first; i < last; ++i) {
-    const double u = state.internal_energy[i] * scale, excess = u - mean_energy_;
-    sums[Primary::inverse_temperature] += 1 / prepared_.fluid().temperature(u);
-    sums[Primary::energy_1] += excess;
-    sums[Primary::energy_2] += excess * excess;
-    sums[Primary::energy_3] += excess * excess * excess;
+    if (!fluid.isothermal()) {
+      const double u = state.internal_energy[i] * scale, excess = u - mean_energy_;
+      sums[Primary::inverse_temperature] += 1 / fluid.temperature(u);
+      sums[Primary::energy_1] += excess;
+      sums[Primary::energy_2] += excess * excess;
+      sums[Primary::energy_3] += excess * excess * excess;
+    }
     if (!prepared_.distributions()) continue;
     const auto& exact = *prepared_.distributions();
-    ++record_.internal_energy_blocks[block]
-          .counts[exact.internal_energy.bin(state.internal_energy[i] / energy)];
+    if (exact.internal_energy) {
+      ++record_.internal_energy_blocks[block]
+            .counts[exact.internal_energy->bin(state.internal_energy[i] / energy)];
+    }
     if (components == 1 && i > first) continue;  // the partner's momentum is the opposite
     for (int axis = 0; axis < components; ++axis) {
       const double v = state.velocity[i][axis] - whole.velocity[axis];

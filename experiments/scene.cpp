@@ -84,6 +84,29 @@ Scene two_body() {
   return scene;
 }
 
+Scene groot_warren_1997() {
+  Scene scene;
+  scene.name = scene.preset = "groot-warren-1997";
+  scene.fluid = {.boltzmann = 1,
+                 .mass = 1,
+                 .temperature = 1,
+                 .heat_capacity = 1,
+                 .repulsion = 25,
+                 .repulsion_range = 1,
+                 .friction = 4.5,
+                 .friction_closure = FrictionClosure::noise,
+                 .friction_range = 1,
+                 .conduction = 0,
+                 .heat_form = HeatForm::none,
+                 .heat_range = 1,
+                 .weight_exponent = 2,
+                 .isothermal = true};
+  scene.particles = 648;
+  scene.density = 3;
+  scene.initial_state = InitialState::canonical;
+  return scene;
+}
+
 /// [w], the volume integral of (1 - r/range)^s: 8 pi range^3/((s + 1)(s + 2)(s + 3)).
 double weight_volume(double range, double exponent) {
   return 8 * pi * std::pow(range, 3) / ((exponent + 1) * (exponent + 2) * (exponent + 3));
@@ -148,6 +171,10 @@ const std::vector<Preset>& presets() {
       {"two-body", "Many isolated frozen pairs, whose exact law is known at any heat capacity",
        "this program: one pair at a fixed distance, friction and conduction alike in speed",
        two_body()},
+      {"groot-warren-1997", "The soft fluid with a bath, without internal energies",
+       "Groot, Warren, J. Chem. Phys. 107, 4423 (1997): a = 25, density 3, sigma = 3 (friction "
+       "4.5), k T = 1, isothermal",
+       groot_warren_1997()},
   };
   return all;
 }
@@ -165,6 +192,7 @@ double kinetic_relaxation_time(const Scene& scene) {
 }
 
 double relaxation_time(const Scene& scene) {
+  if (scene.fluid.isothermal) return std::numeric_limits<double>::infinity();
   const double rate =
       scene.layout == Layout::pairs ? pair_relaxation_rate(scene) : fluid_relaxation_rate(scene);
   return rate > 0 ? 1 / rate : std::numeric_limits<double>::infinity();

@@ -10,8 +10,9 @@
 
 namespace driftless {
 
-/// How velocities and internal energies start.
-enum class InitialState { microcanonical, rest, given };
+/// How velocities and internal energies start: drawn from the exact law, which is microcanonical, or
+/// canonical in an isothermal scene; or otherwise.
+enum class InitialState { microcanonical, canonical, rest, given };
 
 /// What is simulated: the fluid, how much of it, and how it starts. All in program units.
 struct Scene {
@@ -31,6 +32,12 @@ struct Scene {
   std::vector<Vector> initial_velocities;  ///< one per particle, for `given`; overrides the spread
 };
 
+/// Whether every replica starts from the exact law.
+inline bool starts_in_law(const Scene& scene) {
+  return scene.initial_state == InitialState::microcanonical ||
+         scene.initial_state == InitialState::canonical;
+}
+
 /// A named scene with what it is for.
 struct Preset {
   std::string_view name;
@@ -39,15 +46,15 @@ struct Preset {
   Scene scene;
 };
 
-/// mackie-1999, soft-fluid, two-body.
+/// mackie-1999, soft-fluid, two-body, groot-warren-1997.
 const std::vector<Preset>& presets();
 
 /// Predicted relaxation time of internal energies (derived: friction at rate rho zeta_0 [w]/(2 m
 /// a), conduction at rate rho L_0 [w]/(phi T^2), [w] the volume integral of the weight; for `pairs`
-/// the rates at the pair's distance). Infinite if nothing acts.
+/// the rates at the pair's distance). Infinite if nothing acts, and where there are none.
 double relaxation_time(const Scene& scene);
 
-/// Predicted relaxation time of the kinetic energy towards the internal energies, by friction: rate
+/// Predicted relaxation time of the kinetic energy towards the internal energies or a bath: rate
 /// 2 rho zeta_0 [w]/(3 m) in a fluid (twice the collision rate of Groot and Warren 1997), 4 zeta
 /// w/m for a pair. Infinite without friction.
 double kinetic_relaxation_time(const Scene& scene);

@@ -83,13 +83,28 @@ void check_given_velocities(const Scene& scene, const Location& location) {
   }
 }
 
-/// The exact law is one of fluctuations.
-void check_microcanonical(const Fluid& fluid, const Location& location) {
-  if (fluid.fluctuates()) return;
-  location.member("initial_state")
-      .refuse(
-          "is \"microcanonical\", but nothing fluctuates where boltzmann is 0; allowed is "
-          "\"rest\", or \"given\" with initial_velocities or initial_velocity_spread");
+/// The exact law is one of fluctuations, of an isolated system or of one with a bath.
+void check_law(const Scene& scene, const Location& location) {
+  const Location place = location.member("initial_state");
+  const std::string state(to_string(scene.initial_state));
+  if (!(scene.fluid.boltzmann > 0)) {
+    place.refuse("is \"" + state +
+                 "\", but nothing fluctuates where boltzmann is 0; allowed is \"rest\", or "
+                 "\"given\" with initial_velocities or initial_velocity_spread");
+  }
+  const bool canonical = scene.initial_state == InitialState::canonical;
+  if (canonical == scene.fluid.isothermal) return;
+  place.refuse("is \"" + state + "\", the law of " +
+               (canonical ? "a bath, and isothermal is false; allowed is \"microcanonical\""
+                          : "isolated systems, and isothermal is true; allowed is \"canonical\"") +
+               ", \"rest\" or \"given\"");
+}
+
+void check_bath(const Fluid& fluid, const Location& location) {
+  if (!fluid.isothermal() || fluid.has_friction()) return;
+  location.member("friction").refuse(
+      "is 0, but friction and its noise are the only contact with the bath where isothermal is "
+      "true; allowed is a number > 0");
 }
 
 }  // namespace
@@ -102,12 +117,13 @@ void check_scene(const Scene& scene, const Location& location) try {
                             "0 where frozen is true",
                             describe(scene.fluid.repulsion)));
   }
+  check_bath(fluid, location);
   if (scene.layout == Layout::pairs) {
     check_pairs(scene, fluid, location);
   } else {
     check_box(scene, fluid, location);
   }
-  if (scene.initial_state == InitialState::microcanonical) check_microcanonical(fluid, location);
+  if (starts_in_law(scene)) check_law(scene, location);
   check_given_velocities(scene, location);
 } catch (const std::invalid_argument& error) {
   location.refuse(error.what());  // a product or quotient of keys, each within its range

@@ -63,6 +63,27 @@ void set_heat_form(Scene& scene, const json& value) {
   }
 }
 
+/// What the preset has of internal energies, or of a bath, goes with it.
+void set_isothermal(Scene& scene, const json& value) {
+  auto& fluid = scene.fluid;
+  fluid.isothermal = value.get<bool>();
+  if (fluid.isothermal) {
+    fluid.heat_form = HeatForm::none;
+    fluid.conduction = 0;
+  }
+  if (starts_in_law(scene)) {
+    scene.initial_state =
+        fluid.isothermal ? InitialState::canonical : InitialState::microcanonical;
+  }
+}
+
+void set_initial_state(Scene& scene, const json& value) {
+  for (const auto state : {InitialState::microcanonical, InitialState::canonical,
+                           InitialState::rest, InitialState::given}) {
+    if (value == to_string(state)) scene.initial_state = state;
+  }
+}
+
 void set_velocities(Scene& scene, const json& list) {
   scene.initial_velocities.clear();
   for (const auto& velocity : list) scene.initial_velocities.push_back(to_vector(velocity));
@@ -73,8 +94,8 @@ std::string_view of_fluids(const Scene& scene) {
   return scene.layout == Layout::fluid ? "" : "isolated pairs stand on a lattice of their own";
 }
 std::string_view of_placed_fluids(const Scene& scene) {
-  const bool equilibrium = scene.fluid.has_repulsion() && scene.fluid.boltzmann > 0 &&
-                           scene.initial_state == InitialState::microcanonical;
+  const bool equilibrium =
+      scene.fluid.has_repulsion() && scene.fluid.boltzmann > 0 && starts_in_law(scene);
   return equilibrium ? "a fluid with repulsion starts from its equilibrium" : of_fluids(scene);
 }
 std::string_view of_pairs(const Scene& scene) {
@@ -83,7 +104,21 @@ std::string_view of_pairs(const Scene& scene) {
 std::string_view of_given(const Scene& scene) {
   return scene.initial_state == InitialState::given ? "" : "initial_state is not \"given\"";
 }
-std::string_view not_of_microcanonical(const Scene& scene) {
+std::string_view of_internal_energies(const Scene& scene) {
+  return scene.fluid.isothermal ? "isothermal is true and particles have no internal energy" : "";
+}
+std::string_view of_conducting(const Scene& scene) {
+  return scene.fluid.isothermal
+             ? "isothermal is true and particles have no heat that they could exchange"
+             : "";
+}
+std::string_view of_closures(const Scene& scene) {
+  return scene.fluid.isothermal
+             ? "isothermal is true and neither coefficient depends on anything but the distance"
+             : "";
+}
+std::string_view of_initial_energies(const Scene& scene) {
+  if (scene.fluid.isothermal) return of_internal_energies(scene);
   return scene.initial_state != InitialState::microcanonical
              ? ""
              : "initial_state is \"microcanonical\", which starts at temperature";
@@ -132,7 +167,7 @@ std::vector<SceneKey> keys_of_the_system() {
        [](Scene& scene, const json& value) { scene.particles = to_integer(value); }},
       plain<&Scene::density>("density", ValueRule::positive(), "particles per volume", of_fluids),
       {"temperature", ValueRule::positive(),
-       "temperature T of the start, and at which friction is quoted",
+       "temperature T of the start, and at which friction is quoted; of the bath if isothermal",
        [](const Scene& scene) -> json { return scene.fluid.temperature; },
        [](Scene& scene, const json& value) {
          scene.fluid.temperature = scene.initial_temperature = value.get<double>();
@@ -141,12 +176,16 @@ std::vector<SceneKey> keys_of_the_system() {
        "Boltzmann's constant k; 0 switches every fluctuation off and needs an initial_state",
        [](const Scene& scene) -> json { return scene.fluid.boltzmann; }, set_boltzmann},
       plain<&FluidParameters::mass>("mass", ValueRule::positive(), "mass m of a particle"),
+      {"isothermal", ValueRule::boolean(),
+       "particles have no internal energy; friction and noise are the contact with a bath",
+       [](const Scene& scene) -> json { return scene.fluid.isothermal; }, set_isothermal},
       {"heat_capacity", ValueRule::positive(),
        "heat capacity phi of a particle in units of k; in program units where k is 0",
        [](const Scene& scene) -> json { return heat_capacity_in_units(scene); },
        [](Scene& scene, const json& value) {
          scene.fluid.heat_capacity = value.get<double>() * heat_capacity_unit(scene);
-       }},
+       },
+       of_internal_energies},
   };
 }
 
@@ -164,18 +203,21 @@ std::vector<SceneKey> keys_of_the_laws() {
        [](Scene& scene, const json& value) {
          scene.fluid.friction_closure =
              value == "noise" ? FrictionClosure::noise : FrictionClosure::friction;
-       }},
+       },
+       of_closures},
       plain<&FluidParameters::friction_range>("friction_range", ValueRule::positive(),
                                               "distance at which the friction ends"),
       {"heat_form", ValueRule::word({"none", "inverse-temperature", "temperature"}),
        "what drives the heat between two particles: the difference of the inverse temperatures, "
        "that of the temperatures, or nothing",
-       [](const Scene& scene) -> json { return to_string(scene.fluid.heat_form); }, set_heat_form},
+       [](const Scene& scene) -> json { return to_string(scene.fluid.heat_form); }, set_heat_form,
+       of_conducting},
       plain<&FluidParameters::conduction>(
           "conduction", ValueRule::not_negative(),
-          "L_0 of the form inverse-temperature, lambda_0 = L_0/T^2 of the form temperature"),
+          "L_0 of the form inverse-temperature, lambda_0 = L_0/T^2 of the form temperature",
+          of_conducting),
       plain<&FluidParameters::heat_range>("heat_range", ValueRule::positive(),
-                                          "distance at which the conduction ends"),
+                                          "distance at which the conduction ends", of_conducting),
       plain<&FluidParameters::weight_exponent>(
           "weight_exponent", ValueRule::positive(),
           "s of the weight (1 - r/range)^s of friction and conduction"),
@@ -212,26 +254,24 @@ std::vector<SceneKey> keys_of_the_start() {
          return list;
        },
        set_velocities, of_given},
-      {"initial_state", ValueRule::word({"microcanonical", "rest", "given"}),
-       "velocities and internal energies at the start: drawn from the exact law, at rest, or given",
+      {"initial_state", ValueRule::word({"microcanonical", "canonical", "rest", "given"}),
+       "velocities and internal energies at the start: drawn from the exact law, which is "
+       "microcanonical, or canonical if isothermal; at rest; or given",
        [](const Scene& scene) -> json { return to_string(scene.initial_state); },
-       [](Scene& scene, const json& value) {
-         scene.initial_state = value == "rest"    ? InitialState::rest
-                               : value == "given" ? InitialState::given
-                                                  : InitialState::microcanonical;
-       }},
+       set_initial_state},
       {"initial_temperature", ValueRule::positive(),
        "temperature of every particle at the start if not microcanonical; temperature if not given",
        [](const Scene& scene) -> json { return scene.initial_temperature; },
        [](Scene& scene, const json& value) { scene.initial_temperature = value.get<double>(); },
-       not_of_microcanonical},
+       of_initial_energies},
   };
 }
 
 }  // namespace
 
 // Boltzmann's constant comes before the heat capacity in its units, the temperature and the heat
-// form before the conduction that they convert, what gives velocities before the state it implies.
+// form before the conduction that they convert, the bath before the laws and the start that go with
+// it, what gives velocities before the state it implies.
 const std::vector<SceneKey>& scene_keys() {
   static const std::vector<SceneKey> keys = [] {
     std::vector<SceneKey> all = keys_of_the_system();
@@ -253,6 +293,8 @@ std::string_view to_string(InitialState state) {
   switch (state) {
     case InitialState::microcanonical:
       return "microcanonical";
+    case InitialState::canonical:
+      return "canonical";
     case InitialState::rest:
       return "rest";
     case InitialState::given:

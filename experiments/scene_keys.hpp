@@ -41,7 +41,7 @@ void check_scene(const Scene& scene, const Location& location);
 /// The scene's keys without name and preset.
 nlohmann::json scene_parameters(const Scene& scene);
 
-/// "microcanonical", "rest" or "given"; "random" or "lattice".
+/// "microcanonical", "canonical", "rest" or "given"; "random" or "lattice".
 std::string_view to_string(InitialState state);
 std::string_view to_string(Placement placement);
 

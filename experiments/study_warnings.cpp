@@ -56,7 +56,7 @@ std::string too_short(const Study& study, const Scene& scene) {
     parts.push_back(fmt::format("{} energies relax in about {:.3g}", energies, time));
     longest = std::max(longest, time);
   };
-  add("internal", relaxation_time(scene));
+  if (!scene.fluid.isothermal) add("internal", relaxation_time(scene));
   add("kinetic", kinetic_relaxation_time(scene));
   if (parts.empty()) return "";
   return fmt::format(

@@ -28,6 +28,7 @@ const Method averaged_drift = {
         "Avalos, Mackie, Europhys. Lett. 40, 141 (1997); "
         "Mackie, Bonet Avalos, Navas, PCCP 1, 2039 (1999), below eq. 2.36",
     .conserves = "momentum; energy in the mean, to first order",
+    .isothermal = true,
     .closures = {FrictionClosure::noise, FrictionClosure::friction},
     .make = [](const Options&) -> std::unique_ptr<Integrator> {
       return std::make_unique<AveragedDrift>();

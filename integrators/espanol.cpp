@@ -24,6 +24,7 @@ const Method espanol = {.name = "espanol",
                         .title = "Ito Euler-Maruyama (Espanol 1997)",
                         .reference = "Espanol, Europhys. Lett. 40, 631 (1997)",
                         .conserves = "momentum; energy in the mean, to first order",
+                        .isothermal = true,
                         .closures = {FrictionClosure::noise},
                         .make = [](const Options&) -> std::unique_ptr<Integrator> {
                           return std::make_unique<Espanol>();

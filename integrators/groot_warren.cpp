@@ -18,6 +18,7 @@ const Method groot_warren = {
         "Groot, Warren, J. Chem. Phys. 107, 4423 (1997); "
         "Li, Tang, Lei, Caswell, Karniadakis, J. Comput. Phys. 265, 113 (2014)",
     .conserves = "momentum; energy in the mean, to first order",
+    .isothermal = true,
     .closures = {FrictionClosure::noise, FrictionClosure::friction},
     .options = {{"lambda", 0.65, "share of the step of the prediction, above 0, at most 1"}},
     .make = [](const Options& options) -> std::unique_ptr<Integrator> {

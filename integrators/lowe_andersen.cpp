@@ -54,6 +54,8 @@ const Method lowe_andersen = {
     .consistent = false,
     .order_independent = false,
     .pair_law_exact = true,
+    .isothermal = true,
+    .isothermal_pair_law_exact = true,
     .closures = {FrictionClosure::noise, FrictionClosure::friction},
     .options = {{"rate", 1.0, "of jumps, in units of zeta/mu, above 0"},
                 {"resampling", std::string("exact"), "of velocities: \"exact\" or \"maxwell\""}},

@@ -30,6 +30,7 @@ const Method marsh_coveney = {
     .title = "Collide, then stream (Marsh-Coveney 1998)",
     .reference = "Marsh, Coveney, J. Phys. A 31, 6561 (1998), eqs. 10-13, 26",
     .conserves = "momentum; energy in the mean, to first order",
+    .isothermal = true,
     .closures = {FrictionClosure::noise},
     .make = [](const Options&) -> std::unique_ptr<Integrator> {
       return std::make_unique<MarshCoveney>();

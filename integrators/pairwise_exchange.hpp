@@ -38,6 +38,7 @@ enum class Resampling { exact, maxwell };
 ///              exact, with O(k/phi) refusals, and energies above 0
 ///   `maxwell`  v' normal of variance k Theta/mu at the energies before, as one would for a bath:
 ///              the law is off by O(k/phi), whatever dt
+/// In an isothermal fluid both are the jumps of Lowe 1999, exact in law.
 template <class V>
 Transfer<V> lowe_andersen_friction(const Fluid& fluid, const Pair<V>& pair, double dt, double rate,
                                    Resampling resampling) {
@@ -45,8 +46,9 @@ Transfer<V> lowe_andersen_friction(const Fluid& fluid, const Pair<V>& pair, doub
   using std::sqrt;
   const double mu = fluid.reduced_mass(), k = fluid.boltzmann();
   Pair<V> rest = pair;
-  rest.u_i += 0.25 * mu * pair.v * pair.v;
-  rest.u_j += 0.25 * mu * pair.v * pair.v;
+  const double share = fluid.isothermal() ? 0 : 0.25 * mu;  // a bath's energy is what it is
+  rest.u_i += share * pair.v * pair.v;
+  rest.u_j += share * pair.v * pair.v;
   const V x = rate * fluid.friction(rest).friction * dt / mu;
   const V probability = x * mean_decay(x);
   const Pair<V>& bath = resampling == Resampling::exact ? rest : pair;
@@ -54,7 +56,7 @@ Transfer<V> lowe_andersen_friction(const Fluid& fluid, const Pair<V>& pair, doub
   const V v = sqrt(k * spread) * pair.noise;
   const auto transfer = change_velocity(fluid, pair, v - pair.v);
   const auto jumps = pair.uniform < probability;
-  if (resampling == Resampling::maxwell) return only_where(jumps, transfer);
+  if (resampling == Resampling::maxwell || fluid.isothermal()) return only_where(jumps, transfer);
   const PossibleGains<V> gains(pair, transfer);
   const V ratio = entropy_gain(fluid, pair, gains) + (v * v - pair.v * pair.v) / (2 * spread);
   // A uniform variate below p is p times another one.

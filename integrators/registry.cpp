@@ -77,6 +77,11 @@ std::size_t detail::registered_methods() { return registry().all.size(); }
 std::string detail::take_complaint() { return std::exchange(registry().complaint, {}); }
 
 std::optional<std::string> refusal(const Method& method, const Fluid& fluid) {
+  if (fluid.isothermal()) {
+    if (method.isothermal) return std::nullopt;
+    return std::string(method.name) +
+           " is built for particles with internal energies, this scene is isothermal and has none";
+  }
   const auto closure = fluid.parameters().friction_closure;
   const auto& built_for = method.closures;
   const bool suited = std::find(built_for.begin(), built_for.end(), closure) != built_for.end();

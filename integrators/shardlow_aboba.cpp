@@ -39,6 +39,8 @@ const Method shardlow_aboba = {
     .conserves = "momentum; energy to rounding without a potential",
     .energy_ideal = EnergyClaim::exact,
     .order_independent = false,
+    .isothermal = true,
+    .isothermal_pair_law_exact = true,
     .stays_consistent =
         [](const Options& options, const Fluid& fluid) {
           return shardlow_is_consistent(fluid,

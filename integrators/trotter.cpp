@@ -40,6 +40,8 @@ const Method trotter = {
     .conserves = "momentum; energy to rounding without a potential",
     .energy_ideal = EnergyClaim::exact,
     .order_independent = false,
+    .isothermal = true,
+    .isothermal_pair_law_exact = true,
     .closures = {FrictionClosure::noise, FrictionClosure::friction},
     .make = [](const Options&) -> std::unique_ptr<Integrator> {
       return std::make_unique<Trotter>();

@@ -13,6 +13,7 @@ const Method velocity_verlet_dpde = {
     .title = "Velocity Verlet with all forces (DPDE-VV)",
     .reference = "Larentzos et al., Comput. Phys. Commun. 185, 1987 (2014); LAMMPS, DPD-REACT",
     .conserves = "momentum; energy in the mean, to first order",
+    .isothermal = true,
     .closures = {FrictionClosure::noise, FrictionClosure::friction},
     .make = [](const Options&) -> std::unique_ptr<Integrator> {
       return std::make_unique<PredictedVerlet>(0.5);

@@ -14,10 +14,19 @@ void require(bool allowed, const char* name, double value, const char* range) {
   throw std::invalid_argument(message.str());
 }
 
+/// At the one temperature that there is the two closures are the same; with `noise` nothing is
+/// noise-induced.
+FluidParameters with_bath(FluidParameters parameters) {
+  if (!parameters.isothermal) return parameters;
+  parameters.friction_closure = FrictionClosure::noise;
+  parameters.heat_capacity = 1;
+  return parameters;
+}
+
 }  // namespace
 
 Fluid::Fluid(const FluidParameters& parameters)
-    : parameters_(parameters), inverse_heat_capacity_(1 / parameters.heat_capacity) {
+    : parameters_(with_bath(parameters)), inverse_heat_capacity_(1 / parameters_.heat_capacity) {
   const auto& f = parameters_;
   require(f.boltzmann >= 0, "boltzmann", f.boltzmann, ">= 0");
   require(f.mass > 0, "mass", f.mass, "> 0");
@@ -29,6 +38,8 @@ Fluid::Fluid(const FluidParameters& parameters)
   require(f.friction_range > 0, "friction_range", f.friction_range, "> 0");
   require(f.conduction >= 0, "conduction", f.conduction, ">= 0");
   require(f.heat_range > 0, "heat_range", f.heat_range, "> 0");
+  require(!f.isothermal || !f.has_conduction(), "conduction", f.conduction,
+          "0 in an isothermal fluid, whose particles have no heat to exchange");
   require(f.weight_exponent > 0, "weight_exponent", f.weight_exponent, "> 0");
 }
 

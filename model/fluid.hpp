@@ -16,11 +16,12 @@ enum class FrictionClosure { noise, friction };
 /// Ernst 2005 (`temperature`, flux lambda (theta_i - theta_j)).
 enum class HeatForm { none, inverse_temperature, temperature };
 
-/// Parameters of one species of DPDE particles, all in program units.
+/// Parameters of one species of particles, all in program units: of DPDE, with internal energies, or
+/// of isothermal DPD, where a bath takes their place.
 struct FluidParameters {
   double boltzmann = 1;      ///< Boltzmann's constant k >= 0; 0 switches every fluctuation off
   double mass = 1;           ///< particle mass m > 0
-  double temperature = 1;    ///< reference temperature T > 0 at which `friction` is quoted
+  double temperature = 1;    ///< T > 0 at which `friction` is quoted; of the bath if isothermal
   double heat_capacity = 1;  ///< phi = du/dtheta > 0 of one particle (s = phi ln u)
   double repulsion = 0;      ///< a of psi = (a r_c/2)(1 - r/r_c)^2 (Groot and Warren 1997)
   double repulsion_range = 1;
@@ -31,6 +32,10 @@ struct FluidParameters {
   HeatForm heat_form = HeatForm::none;
   double heat_range = 1;
   double weight_exponent = 2;  ///< s of w(r) = (1 - r/r_c)^s, for friction and heat
+  /// Particles have no internal energy: friction and its noise exchange energy with a bath of the
+  /// temperature T, Gamma^2 = 2 k T zeta with zeta = zeta_0 w(r) for either closure [Espanol, Warren,
+  /// Europhys. Lett. 30, 191 (1995)]. Nothing conducts, and the heat capacity has no meaning.
+  bool isothermal = false;
 
   bool has_repulsion() const { return repulsion != 0; }
   bool has_friction() const { return friction != 0; }
@@ -66,13 +71,18 @@ struct AmplitudeSlopes {
 /// Every function is pure and generic in V (double or a vector of lanes).
 class Fluid {
  public:
-  /// Throws std::invalid_argument naming the parameter, its value and the allowed range.
+  /// Throws std::invalid_argument naming the parameter, its value and the allowed range. If
+  /// isothermal, the closure is `noise` and the heat capacity 1, so that bath_energy() has the
+  /// bath's temperature and the laws below are those of the bath.
   explicit Fluid(const FluidParameters& parameters);
 
   const FluidParameters& parameters() const { return parameters_; }
   bool has_repulsion() const { return parameters_.has_repulsion(); }
   bool has_friction() const { return parameters_.has_friction(); }
   bool has_conduction() const { return parameters_.has_conduction(); }
+  bool isothermal() const { return parameters_.isothermal; }
+  /// What kernels see in the place of an internal energy in an isothermal fluid.
+  double bath_energy() const { return internal_energy(parameters_.temperature); }
   bool fluctuates() const { return parameters_.boltzmann > 0; }
   double boltzmann() const { return parameters_.boltzmann; }
   double mass() const { return parameters_.mass; }

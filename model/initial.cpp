@@ -135,6 +135,16 @@ void draw_microcanonical(const Fluid& fluid, Layout layout, double energy, const
   });
 }
 
+void draw_canonical(const Fluid& fluid, Layout layout, double temperature, const Noise& noise,
+                    State& state) {
+  draw_directions(layout, noise, state);
+  const double spread = std::sqrt(fluid.boltzmann() * temperature / fluid.mass());
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    state.velocity[i] *= spread;
+    state.internal_energy[i] = 0;
+  }
+}
+
 void draw_off_equilibrium(const Fluid& fluid, Layout layout, double energy, const Noise& noise,
                           State& state) {
   const auto law = microcanonical_law(fluid, layout, state.size());

@@ -223,6 +223,7 @@ bool PairPass::apply(const PassParticles& particles, std::size_t from, std::size
   const PassClock clock(part(&PassSeconds::scatter));
   const double inverse_mass = 1 / fluid_->mass();
   Quadruple* const result = particles.result;
+  const bool isothermal = fluid_->isothermal();
   bool positive = true;
   for (std::size_t n = from; n < to; n += Lanes::count()) {
     const Lanes change = Lanes::load(arrays_.momentum + n) * inverse_mass;
@@ -230,8 +231,8 @@ bool PairPass::apply(const PassParticles& particles, std::size_t from, std::size
                 y = change * Lanes::load(arrays_.e_y + n),
                 z = change * Lanes::load(arrays_.e_z + n);
     const auto i = fetch(result, i_ + n), j = fetch(result, j_ + n);
-    const Lanes u_i = i.energy + Lanes::load(arrays_.energy_i + n);
-    const Lanes u_j = j.energy + Lanes::load(arrays_.energy_j + n);
+    const Lanes u_i = isothermal ? i.energy : i.energy + Lanes::load(arrays_.energy_i + n);
+    const Lanes u_j = isothermal ? j.energy : j.energy + Lanes::load(arrays_.energy_j + n);
     turn({i.x + x, i.y + y, i.z + z, u_i}, &to_i_[0]);
     turn({j.x - x, j.y - y, j.z - z, u_j}, &to_j_[0]);
     const std::size_t count = std::min(Lanes::count(), to - n);
@@ -239,6 +240,7 @@ bool PairPass::apply(const PassParticles& particles, std::size_t from, std::size
       result[i_[n + lane]] = to_i_[lane];
       result[j_[n + lane]] = to_j_[lane];
     }
+    if (isothermal) continue;
     const auto counted = hn::FirstN(Doubles(), count);
     const auto spent = (u_i <= 0.0 || u_j <= 0.0).raw();
     positive = positive && hn::AllFalse(Doubles(), hn::And(counted, spent));

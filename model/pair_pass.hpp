@@ -79,7 +79,7 @@ class PairPass {
   /// Adds what the pairs exchange to the particles' sums, one pair after the other.
   void add(Quadruple* sums);
   /// Changes velocities and energies by what pairs exchange, no particle twice among them; false if
-  /// an energy is then not above zero.
+  /// an energy is then not above zero. In an isothermal fluid energies stay as they are.
   bool apply(const PassParticles& particles, std::size_t from, std::size_t to);
 
   const PairArrays& arrays() const { return arrays_; }

@@ -40,6 +40,7 @@ System::System(const Fluid& fluid, const Box& box, State state, const Noise& noi
       frozen_(frozen),
       cells_(box, fluid_.range(), state_.size()),
       pairs_(cells_, fluid_.range(), 1) {
+  drop_if_isothermal(state_.internal_energy);
   set_threads(1);
 }
 
@@ -80,10 +81,12 @@ void System::find_pairs() {
 void System::gather_motion(const Motion& motion, std::vector<Quadruple>& gathered) const {
   gathered.resize(size());
   const auto& place = cells_.place();
+  const bool isothermal = fluid_.isothermal();
+  const double bath = fluid_.bath_energy();
   for_each_particle([&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const Vector& v = motion.velocity[place[n]];
-      gathered[n] = {v[0], v[1], v[2], motion.internal_energy[place[n]]};
+      gathered[n] = {v[0], v[1], v[2], isothermal ? bath : motion.internal_energy[place[n]]};
     }
   });
 }
@@ -133,6 +136,7 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
     pass.run(kernel, 0, count);
   });
   scatter_sums(total.momentum, total.energy);
+  drop_if_isothermal(total.energy);
   count_visit(!kept, false);
 }
 
@@ -163,6 +167,10 @@ void System::scatter_sums(std::vector<Vector>& momentum, std::vector<double>& en
     }
   });
   summing_ = false;
+}
+
+void System::drop_if_isothermal(std::vector<double>& energies) const {
+  if (fluid_.isothermal()) std::fill(energies.begin(), energies.end(), 0.0);
 }
 
 void System::forget_sums() {
@@ -229,7 +237,7 @@ void System::sweep(const PairKernel& kernel, const Sweep& how) {
     bool all = true;
     for (std::size_t n = begin; n < end; ++n) {
       state_.velocity[place[n]] = Vector(motion_[n].x, motion_[n].y, motion_[n].z);
-      state_.internal_energy[place[n]] = motion_[n].energy;
+      if (!fluid_.isothermal()) state_.internal_energy[place[n]] = motion_[n].energy;
       all = all & is_sound(place[n]);
     }
     if (!all) sound = false;
@@ -270,6 +278,7 @@ void System::apply(const Exchange& exchange) {
 void System::set_motion(const Motion& motion) {
   state_.velocity = motion.velocity;
   state_.internal_energy = motion.internal_energy;
+  drop_if_isothermal(state_.internal_energy);
   check();
 }
 
@@ -289,7 +298,7 @@ void System::throw_failure(std::vector<std::uint32_t> in_passing) const {
   for (std::size_t i = 0; i < size(); ++i) {
     if (is_sound(i)) continue;
     failed.push_back(state_.id[i]);
-    negative = negative || state_.internal_energy[i] <= 0;
+    negative = negative || (!fluid_.isothermal() && state_.internal_energy[i] <= 0);
   }
   std::sort(failed.begin(), failed.end());
   failed.erase(std::unique(failed.begin(), failed.end()), failed.end());
@@ -395,6 +404,7 @@ Vector System::momentum() const {
 void System::set_state(State state) {
   const bool as_many = state.size() == size();
   state_ = valid(box_, std::move(state));
+  drop_if_isothermal(state_.internal_energy);
   ++positions_version_;
   if (!as_many) cut_cells();
 }

@@ -26,7 +26,8 @@ struct Counters {
 
 /// N particles of a fluid in a periodic box: the one interface through which integrators see the
 /// model. Kernels say what a pair exchanges; how pairs are found, stored and visited is hidden
-/// here.
+/// here. In an isothermal fluid every internal energy of the state is 0 and stays so: kernels see
+/// Fluid::bath_energy() in its place, and what they, exchanges and updates give to it the bath takes.
 class System {
  public:
   /// `frozen` particles keep their positions. Throws std::invalid_argument if the arrays differ in
@@ -129,6 +130,8 @@ class System {
   void forget_sums();
   /// Hands out the sums and leaves zeros.
   void scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy);
+  /// Leaves zeros where there are no internal energies.
+  void drop_if_isothermal(std::vector<double>& energies) const;
   bool has_kept_normals(const PairBlock& block, Stage stage) const;
   void gather_motion(const Motion& motion, std::vector<Quadruple>& gathered) const;
   void count_visit(bool noise, bool uniforms);
@@ -139,7 +142,8 @@ class System {
   /// Whether a particle's velocity and internal energy are those of a particle.
   bool is_sound(std::size_t place) const {
     const double u = state_.internal_energy[place];
-    return u > 0 && u < std::numeric_limits<double>::infinity() &&
+    const bool has_energy = u > 0 && u < std::numeric_limits<double>::infinity();
+    return (has_energy || fluid_.isothermal()) &&
            std::isfinite(state_.velocity[place].squaredNorm());
   }
   void check() const;
@@ -174,6 +178,7 @@ void System::update(Change&& change) {
     bool all = true;
     for (std::size_t i = begin; i < end; ++i) {
       change(i, state_.velocity[i], state_.internal_energy[i]);
+      if (fluid_.isothermal()) state_.internal_energy[i] = 0;
       all = all & is_sound(i);
     }
     if (!all) sound = false;

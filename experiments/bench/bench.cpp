@@ -70,6 +70,11 @@ const Omission omissions[] = {
     {"no friction", [](FluidParameters& f) { f.friction = 0; }},
     {"no repulsion", [](FluidParameters& f) { f.repulsion = 0; }},
     {"frozen", [](FluidParameters&) {}, true},
+    {"isothermal",
+     [](FluidParameters& f) {
+       f.conduction = 0;
+       f.isothermal = true;
+     }},
 };
 
 }  // namespace

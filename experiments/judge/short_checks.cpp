@@ -51,7 +51,9 @@ Difference momentum_change(const Trial& trial, const Terms& terms) {
   return change.norm();
 }
 
+/// What a bath takes and gives nobody claims to keep.
 Difference energy_change(const Trial& trial, const Terms& terms) {
+  if (terms.isothermal) return {};
   System system = small_system(trial, terms, small_state(fluid_of(terms)));
   const double before = system.total_energy();
   const auto integrator = trial.method.make(trial.options);
@@ -112,7 +114,16 @@ Difference after_forgetting(const Trial& trial, const Terms& terms) {
 // ---- Threads and places in memory, in a box of many tiles. -------------------------------------
 
 /// The wide system has terms of its own.
-bool is_wide(const Terms& terms) { return terms.potential && terms.heat == HeatForm::temperature; }
+bool is_wide(const Terms& terms) {
+  return terms.potential && (terms.isothermal || terms.heat == HeatForm::temperature);
+}
+
+FluidParameters wide_fluid_of(const Terms& terms) {
+  auto f = wide_fluid(terms.closure);
+  f.isothermal = terms.isothermal;
+  if (f.isothermal) f.heat_form = HeatForm::none;
+  return f;
+}
 
 State wide_path(const Trial& trial, const FluidParameters& f, const State& start,
                 unsigned threads) {
@@ -124,7 +135,7 @@ State wide_path(const Trial& trial, const FluidParameters& f, const State& start
 
 Difference on_threads(const Trial& trial, const Terms& terms) {
   if (!is_wide(terms)) return {};
-  const auto f = wide_fluid(terms.closure);
+  const auto f = wide_fluid_of(terms);
   const State start = wide_state(f), alone = wide_path(trial, f, start, 1);
   return std::max(apart(wide_box(), wide_path(trial, f, start, 2), alone),
                   apart(wide_box(), wide_path(trial, f, start, 4), alone));
@@ -132,7 +143,7 @@ Difference on_threads(const Trial& trial, const Terms& terms) {
 
 Difference restarted_on_threads(const Trial& trial, const Terms& terms) {
   if (!is_wide(terms)) return {};
-  const auto f = wide_fluid(terms.closure);
+  const auto f = wide_fluid_of(terms);
   const State start = wide_state(f);
   System first = wide_system(f, start, 1);
   const auto before = trial.method.make(trial.options);
@@ -146,7 +157,7 @@ Difference restarted_on_threads(const Trial& trial, const Terms& terms) {
 
 Difference stored_otherwise_in_tiles(const Trial& trial, const Terms& terms) {
   if (!is_wide(terms)) return {};
-  const auto f = wide_fluid(terms.closure);
+  const auto f = wide_fluid_of(terms);
   const State start = wide_state(f);
   const auto order = shuffled_places(start.size(), 12);
   return apart(wide_box(), wide_path(trial, f, in_order(start, order), 1),

@@ -60,6 +60,11 @@ std::vector<Terms> all_terms(const Method& method) {
       for (const bool potential : {false, true}) all.push_back({closure, heat, potential});
     }
   }
+  for (const bool potential : {false, true}) {
+    if (method.isothermal) {
+      all.push_back({FrictionClosure::noise, HeatForm::none, potential, true});
+    }
+  }
   return all;
 }
 

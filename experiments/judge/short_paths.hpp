@@ -60,7 +60,8 @@ const ShortCheck& short_check(std::string_view name);
 /// in a general direction.
 ShortCheck boost_check(double thermal_velocities);
 
-/// Every closure that the method claims, with every heat form, without and with a potential.
+/// Every closure that the method claims, with every heat form, without and with a potential; and
+/// without internal energies if it claims to do without.
 std::vector<Terms> all_terms(const Method& method);
 
 /// What a check finds over all terms: {"smallest", "largest": {"difference", "terms"}}, or

@@ -36,10 +36,12 @@ struct Terms {
   FrictionClosure closure = FrictionClosure::noise;
   HeatForm heat = HeatForm::none;
   bool potential = false;
+  bool isothermal = false;
 
   std::string name() const {
     return "closure " + std::string(to_string(closure)) + ", heat " + std::string(to_string(heat)) +
-           (potential ? ", with a potential" : ", without a potential");
+           (potential ? ", with a potential" : ", without a potential") +
+           (isothermal ? ", isothermal" : "");
   }
 };
 
@@ -63,13 +65,14 @@ inline FluidParameters small_fluid(const Terms& terms, double boltzmann) {
   f.conduction = terms.heat == HeatForm::none ? 0 : 6;
   f.heat_form = terms.heat;
   f.heat_range = 0.95;
+  f.isothermal = terms.isothermal;
   return f;
 }
 
 inline Box small_box() { return {Vector::Constant(3)}; }
 
 /// 27 particles on a shaken lattice in small_box(), with velocities of order 1, no momentum, and
-/// internal energies between half and one and a half times the mean.
+/// internal energies between half and one and a half times the mean; isothermal, without these.
 inline State small_state(const FluidParameters& fluid, std::uint64_t seed = 1) {
   Uniform uniform(seed);
   const Box box = small_box();
@@ -80,6 +83,7 @@ inline State small_state(const FluidParameters& fluid, std::uint64_t seed = 1) {
     state.position.push_back(box.wrap(site + uniform.vector(-0.25, 0.25)));
     state.velocity.push_back(uniform.vector(-1.5, 1.5));
     state.internal_energy.push_back(fluid.heat_capacity * fluid.temperature * uniform(0.5, 1.5));
+    if (fluid.isothermal) state.internal_energy.back() = 0;
     state.id.push_back(i);
     mean += state.velocity.back() / 27;
   }

@@ -8,8 +8,14 @@ export const equilibrium_parts = [
   'internal_energy_variance',
 ];
 
-export function parts_of(observable) {
-  return observable === 'equilibrium' ? equilibrium_parts : [observable];
+// An isothermal scene has no internal energies: of the equilibrium only the kinetic temperature is left.
+export function parts_of(observable, isothermal = false) {
+  if (observable !== 'equilibrium') return [observable];
+  return isothermal ? equilibrium_parts.slice(0, 1) : equilibrium_parts;
+}
+
+export function is_isothermal(cells) {
+  return cells.some((cell) => cell.isothermal === true);
 }
 
 // The name of a method together with its options, as the result's answers and orders have it.
@@ -27,7 +33,7 @@ export function method_label(cell) {
 export function judge(cell, observable) {
   if (cell.status === 'not_applicable') return {state: 'not_applicable', note: cell.reason ?? ''};
   if (cell.status !== 'ok') return {state: 'failed', note: cell.status};
-  const parts = parts_of(observable).map((name) => ({name, ...cell.observables?.[name]}));
+  const parts = parts_of(observable, cell.isothermal).map((name) => ({name, ...cell.observables?.[name]}));
   const unresolved = parts.find((part) => part.status === 'not_resolved');
   if (unresolved)
     return {state: 'not_resolved', note: unresolved.note ?? '', worst: unresolved.name};

@@ -1,5 +1,5 @@
 // Draws the page's charts, each with the words for those who cannot see it and for where it is empty.
-import {method_label, parts_of} from '../answer.js';
+import {is_isothermal, method_label, parts_of} from '../answer.js';
 import {draw} from '../chart.js';
 import {difference, distribution} from '../charts/distribution.js';
 import {
@@ -56,7 +56,7 @@ export function draw_errors(now) {
   );
   replace(
     'map-note',
-    parts_of(now.observable).length > 1
+    parts_of(now.observable, is_isothermal(scene_cells(now.result, now.scene))).length > 1
       ? 'Each square shows the worst of kinetic temperature, internal temperature and variance of internal energy. '
       : '',
   );
@@ -72,8 +72,11 @@ function unit_of(now, observable) {
 export function draw_drift(now) {
   const at_rounding = methods_at_rounding(now);
   const kept_text = `Every method measured keeps the energy to rounding (below ${number(rounding)} kT per particle).`;
-  const empty = (what) =>
-    at_rounding.length ? kept_text : `No ${what} was measured in this scene.`;
+  const isothermal = is_isothermal(scene_cells(now.result, now.scene));
+  const empty = (what) => {
+    if (isothermal) return 'Energy comes and goes with the bath of an isothermal scene.';
+    return at_rounding.length ? kept_text : `No ${what} was measured in this scene.`;
+  };
   const drift = energy_drift(now, 'energy_drift', '|drift|, kT per particle and unit time');
   const walk = energy_drift(now, 'energy_walk', `random walk${unit_of(now, 'energy_walk')}`);
   draw(

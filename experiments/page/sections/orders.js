@@ -1,5 +1,5 @@
 // The fitted order of each method, beside the chart of error against step; its marks are the legend.
-import {method_label, parts_of} from '../answer.js';
+import {is_isothermal, method_label, parts_of} from '../answer.js';
 import {replace, table} from '../dom.js';
 import {observable_short} from '../format.js';
 import {method_tag} from '../palette.js';
@@ -24,7 +24,7 @@ function order_text(orders, method, observable) {
 
 export function render_orders({result, scene, observable, labels}) {
   const orders = (result.orders ?? []).filter((entry) => entry.scene === scene);
-  const parts = parts_of(observable);
+  const parts = parts_of(observable, is_isothermal(scene_cells(result, scene)));
   const heads = parts.map((part) =>
     parts.length > 1 ? (short_heads[part] ?? observable_short(part)) : 'order',
   );

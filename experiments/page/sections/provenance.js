@@ -18,6 +18,7 @@ const first_keys = [
   'temperature',
   'boltzmann',
   'mass',
+  'isothermal',
   'heat_capacity',
   'friction',
   'friction_closure',
@@ -43,7 +44,14 @@ function parameter_keys(scenes) {
 export function render_scenes({result}) {
   const {scenes} = result;
   const keys = parameter_keys(scenes);
-  const derived = ['relaxation_time', 'energy_per_particle', 'resolves_internal_energy'];
+  const isothermal = scenes.some((scene) => scene.parameters?.isothermal);
+  const derived = [
+    'relaxation_time',
+    ...(isothermal ? ['kinetic_relaxation_time'] : []),
+    'energy_per_particle',
+    'resolves_internal_energy',
+    ...(isothermal ? ['resolves_kinetic_energy'] : []),
+  ];
   const differs = (key) =>
     new Set(scenes.map((scene) => JSON.stringify(scene.parameters?.[key]))).size > 1;
   const rows = [
