@@ -79,9 +79,8 @@ std::string cost_text(double core_seconds_per_time) {
 }
 
 std::string tolerance_clause(const Choice& cheapest, double tolerance) {
-  std::string text =
-      fmt::format("For {}, to have {} within {}: ", cheapest.scene, subject(cheapest),
-                  tolerance_text(cheapest.observable, tolerance));
+  std::string text = fmt::format("For {}, to have {} within {}: ", cheapest.scene,
+                                 subject(cheapest), tolerance_text(cheapest.observable, tolerance));
   if (cheapest.ranked.empty()) {
     text += nothing(cheapest);
   } else {

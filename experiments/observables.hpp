@@ -80,8 +80,9 @@ struct Observed {
   std::optional<std::pair<double, double>> interval = {};  ///< 95 %, where it is not symmetric
 };
 
-/// Everything that the records of a cell's surviving replicas give. What depends on internal energies
-/// is absent from an isothermal scene, and so are drift and walk of its energy, which a bath changes.
+/// Everything that the records of a cell's surviving replicas give. What depends on internal
+/// energies is absent from an isothermal scene, and so are drift and walk of its energy, which a
+/// bath changes.
 struct CellObservables {
   std::vector<Observed> observed;
   EnergyDrift drift;

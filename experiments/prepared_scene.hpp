@@ -17,8 +17,8 @@ struct Reference {
   double error = 0;
 };
 
-/// Distributions under the exact law: of shares of an island's kinetic plus internal energy e, or of
-/// velocities under a bath.
+/// Distributions under the exact law: of shares of an island's kinetic plus internal energy e, or
+/// of velocities under a bath.
 struct ExactDistributions {
   BinnedLaw momentum;  ///< v sqrt(m/2) / sqrt(e (1 - 1/N)), signed; v sqrt(m) / sqrt(k T (1 - 1/N))
   std::optional<BinnedLaw> internal_energy;  ///< u/e
@@ -53,9 +53,7 @@ class PreparedScene {
   /// fluctuates.
   double island_energy() const { return island_energy_; }
   /// Particles of an island.
-  std::size_t island_size() const {
-    return scene_.layout == Layout::pairs ? 2 : scene_.particles;
-  }
+  std::size_t island_size() const { return scene_.layout == Layout::pairs ? 2 : scene_.particles; }
   /// Kinetic degrees of freedom of an island.
   double kinetic_degrees() const {
     return scene_.layout == Layout::pairs ? 1 : 3 * (static_cast<double>(scene_.particles) - 1);

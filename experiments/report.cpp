@@ -118,8 +118,13 @@ std::string answers_of(const json& result, const std::string& scene) {
         other["cost"].get<double>());
   }
   if (compared == 0) return about_answers(isothermal, compared);
-  Row head = {"tolerance", "method", "step", "wrong by at most", "core-s per unit time",
-              "energy drift, kT per particle and unit time", "runner-up"};
+  Row head = {"tolerance",
+              "method",
+              "step",
+              "wrong by at most",
+              "core-s per unit time",
+              "energy drift, kT per particle and unit time",
+              "runner-up"};
   if (isothermal) {  // energy comes and goes with the bath
     constexpr int drift = 5;
     head.erase(head.begin() + drift);

@@ -71,7 +71,7 @@ void Sampler::take_island(const State& state, std::size_t first, std::size_t las
   const bool scaled = law && !prepared_.fluid().has_repulsion();
   const double scale = scaled ? prepared_.island_energy() / energy : 1;
   sums[Primary::kinetic] += whole.kinetic * scale;
-  if (law) sums[Primary::kinetic_share] += whole.kinetic / (whole.kinetic + whole.internal);
+  sums[Primary::kinetic_share] += whole.kinetic / (whole.kinetic + whole.internal);
   const std::size_t block = taken_ * blocks / static_cast<std::size_t>(record_.samples.rows());
   const double islanders = static_cast<double>(last - first);
   // Of a momentum's square: a share of twice the energy, or k T of the bath.

@@ -10,8 +10,8 @@
 
 namespace driftless {
 
-/// How velocities and internal energies start: drawn from the exact law, which is microcanonical, or
-/// canonical in an isothermal scene; or otherwise.
+/// How velocities and internal energies start: drawn from the exact law, which is microcanonical,
+/// or canonical in an isothermal scene; or otherwise.
 enum class InitialState { microcanonical, canonical, rest, given };
 
 /// What is simulated: the fluid, how much of it, and how it starts. All in program units.

@@ -102,9 +102,10 @@ void check_law(const Scene& scene, const Location& location) {
 
 void check_bath(const Fluid& fluid, const Location& location) {
   if (!fluid.isothermal() || fluid.has_friction()) return;
-  location.member("friction").refuse(
-      "is 0, but friction and its noise are the only contact with the bath where isothermal is "
-      "true; allowed is a number > 0");
+  location.member("friction")
+      .refuse(
+          "is 0, but friction and its noise are the only contact with the bath where isothermal is "
+          "true; allowed is a number > 0");
 }
 
 }  // namespace

@@ -72,8 +72,7 @@ void set_isothermal(Scene& scene, const json& value) {
     fluid.conduction = 0;
   }
   if (starts_in_law(scene)) {
-    scene.initial_state =
-        fluid.isothermal ? InitialState::canonical : InitialState::microcanonical;
+    scene.initial_state = fluid.isothermal ? InitialState::canonical : InitialState::microcanonical;
   }
 }
 

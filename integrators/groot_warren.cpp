@@ -10,7 +10,9 @@ namespace driftless {
 /// the density 3, others take 1/2, where it is velocity-verlet to the last bit. Li et al. leave the
 /// noise-induced friction of the closure `friction` out; here it is in. Noise-free it is of first
 /// order, the velocities of the forces being off by (1 - lambda) F dt/m; lambda = 1 would make it
-/// second. Conserves momentum; energy in the mean only, to O(dt).
+/// second. Conserves momentum; energy in the mean only, to O(dt). In an isothermal fluid it is the
+/// scheme as published; a pair alone then has 1/(1 + (lambda - 1/2) zeta dt/mu) of the right
+/// variance of v (derived).
 const Method groot_warren = {
     .name = "groot-warren",
     .title = "Modified velocity Verlet (Groot-Warren 1997, Li 2014)",

@@ -58,8 +58,8 @@ struct Method {
   /// With the default options the exact law of an isolated pair is left as it is by every step,
   /// however large.
   bool pair_law_exact = false;
-  /// Runs isothermal fluids too, as isothermal DPD has the method: the scheme without what it does to
-  /// internal energies.
+  /// Runs isothermal fluids too, as isothermal DPD has the method: the scheme without what it does
+  /// to internal energies.
   bool isothermal = false;
   /// In an isothermal fluid Maxwell's law of an isolated pair is left as it is by every step for
   /// which zeta dt < 2 mu, with any options.

@@ -16,8 +16,8 @@ enum class FrictionClosure { noise, friction };
 /// Ernst 2005 (`temperature`, flux lambda (theta_i - theta_j)).
 enum class HeatForm { none, inverse_temperature, temperature };
 
-/// Parameters of one species of particles, all in program units: of DPDE, with internal energies, or
-/// of isothermal DPD, where a bath takes their place.
+/// Parameters of one species of particles, all in program units: of DPDE, with internal energies,
+/// or of isothermal DPD, where a bath takes their place.
 struct FluidParameters {
   double boltzmann = 1;      ///< Boltzmann's constant k >= 0; 0 switches every fluctuation off
   double mass = 1;           ///< particle mass m > 0
@@ -33,8 +33,9 @@ struct FluidParameters {
   double heat_range = 1;
   double weight_exponent = 2;  ///< s of w(r) = (1 - r/r_c)^s, for friction and heat
   /// Particles have no internal energy: friction and its noise exchange energy with a bath of the
-  /// temperature T, Gamma^2 = 2 k T zeta with zeta = zeta_0 w(r) for either closure [Espanol, Warren,
-  /// Europhys. Lett. 30, 191 (1995)]. Nothing conducts, and the heat capacity has no meaning.
+  /// temperature T, Gamma^2 = 2 k T zeta with zeta = zeta_0 w(r) for either closure [Espanol,
+  /// Warren, Europhys. Lett. 30, 191 (1995)]. Nothing conducts, and the heat capacity has no
+  /// meaning.
   bool isothermal = false;
 
   bool has_repulsion() const { return repulsion != 0; }

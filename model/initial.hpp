@@ -56,9 +56,9 @@ State place(const Box& box, Layout layout, Placement placement, std::size_t part
 void draw_microcanonical(const Fluid& fluid, Layout layout, double energy, const Noise& noise,
                          State& state);
 
-/// Draws velocities from the exact canonical law of an isothermal fluid at a temperature, the centre
-/// of mass of every island at rest: Maxwell's, the island's momentum removed, so that its kinetic
-/// energy over k T is Gamma(degrees/2) distributed. Internal energies are 0.
+/// Draws velocities from the exact canonical law of an isothermal fluid at a temperature, the
+/// centre of mass of every island at rest: Maxwell's, the island's momentum removed, so that its
+/// kinetic energy over k T is Gamma(degrees/2) distributed. Internal energies are 0.
 void draw_canonical(const Fluid& fluid, Layout layout, double temperature, const Noise& noise,
                     State& state);
 

@@ -27,7 +27,8 @@ struct Counters {
 /// N particles of a fluid in a periodic box: the one interface through which integrators see the
 /// model. Kernels say what a pair exchanges; how pairs are found, stored and visited is hidden
 /// here. In an isothermal fluid every internal energy of the state is 0 and stays so: kernels see
-/// Fluid::bath_energy() in its place, and what they, exchanges and updates give to it the bath takes.
+/// Fluid::bath_energy() in its place, and what they, exchanges and updates give to it the bath
+/// takes.
 class System {
  public:
   /// `frozen` particles keep their positions. Throws std::invalid_argument if the arrays differ in

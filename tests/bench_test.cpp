@@ -151,7 +151,7 @@ TEST(Bench, KernelsOnEveryNumberOfThreads) {
 
 TEST(Bench, ScenesThatLeaveSomethingOutInBothKernels) {
   const auto rows = bench_scenes(tiny_plan());
-  EXPECT_EQ(rows.size(), 10u);
+  EXPECT_EQ(rows.size(), 12u);
   std::set<std::pair<std::string, std::string>> seen;
   for (const auto& row : rows) {
     seen.insert({row.scene, row.kernel});

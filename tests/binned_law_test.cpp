@@ -88,6 +88,23 @@ TEST(SignedRootLaw, EdgesAreMirroredAndHaveEqualProbability) {
   }
 }
 
+TEST(NormalLaw, EdgesAreMirroredAndHaveEqualProbability) {
+  for (const std::size_t bins : {256u, 37u, 2u}) {
+    const BinnedLaw law = BinnedLaw::normal(bins);
+    EXPECT_EQ(law.edges().back(), std::numeric_limits<double>::infinity());
+    for (std::size_t i = 1; i < bins; ++i) {
+      EXPECT_EQ(law.edges()[i], -law.edges()[bins - i]);
+      EXPECT_NEAR(0.5 * std::erfc(-law.edges()[i] / std::sqrt(2)) * static_cast<double>(bins),
+                  static_cast<double>(i), 1e-8);
+    }
+    EXPECT_EQ(law.density(0), 0);
+    EXPECT_EQ(law.bin(-1e9), 0u);
+    EXPECT_EQ(law.bin(1e9), bins - 1);
+    EXPECT_EQ(law.bin(0), bins / 2);
+  }
+  EXPECT_THROW(BinnedLaw::normal(1), std::invalid_argument);
+}
+
 TEST(BinnedLaw, EndBinsTakeWhatIsOutside) {
   const BinnedLaw law = BinnedLaw::beta(3.0, 4.0, 16);
   EXPECT_EQ(law.bin(-1.0), 0u);

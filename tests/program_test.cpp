@@ -81,7 +81,7 @@ TEST_F(Program, ListsMethodsScenesObservablesAndSchemas) {
     EXPECT_NE(methods.find(std::string(name) + "\n"), std::string::npos) << name;
   }
   const auto scenes = call("scenes").text;
-  for (const auto* name : {"mackie-1999", "soft-fluid", "two-body"}) {
+  for (const auto* name : {"mackie-1999", "soft-fluid", "two-body", "groot-warren-1997"}) {
     EXPECT_NE(scenes.find(name), std::string::npos) << name;
   }
   // Also what a preset's own start has no use for.

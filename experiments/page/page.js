@@ -1,5 +1,5 @@
 // The page: reads the result, keeps the choosers' state and draws every part from it.
-import {answer_of, method_label, tolerances_of} from './answer.js';
+import {answer_of, is_isothermal, method_label, tolerances_of} from './answer.js';
 import {all_drawn} from './chart.js';
 import {fill_select, replace} from './dom.js';
 import {cost_unit, is_relative, number, observable_title, percent} from './format.js';
@@ -36,7 +36,11 @@ function observables() {
     for (const [name, value] of Object.entries(cell.observables ?? {}))
       if (value.deviation) known.add(name);
   }
-  return [...usual_order, ...[...known].filter((name) => !usual_order.includes(name))];
+  // Where no scene has internal energies nothing usual is left but the kinetic temperature.
+  const usual = is_isothermal(result.cells)
+    ? usual_order.filter((name) => name === 'equilibrium' || known.has(name))
+    : usual_order;
+  return [...usual, ...[...known].filter((name) => !usual_order.includes(name))];
 }
 
 function context() {

@@ -1,3 +1,4 @@
+import {is_isothermal} from '../answer.js';
 import {error_rows, failure_rows, scene_cells} from '../rows.js';
 import {error_axis, tolerance_line} from './error_axis.js';
 import {error_chart} from './error_chart.js';
@@ -9,7 +10,7 @@ export function error_against_cost({result, scene, observable, tolerance, unit, 
     failures: failure_rows(cells, unit),
     labels,
     x: {field: 'cost', title: `cost, ${unit.name} per unit time`, label_side: 'right'},
-    y: error_axis(observable),
+    y: error_axis(observable, is_isothermal(cells)),
     tolerance: tolerance_line(observable, tolerance),
     legend: {methods: true, orient: 'right', title: 'method'},
     is_answer: winner

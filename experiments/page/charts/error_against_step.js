@@ -1,3 +1,4 @@
+import {is_isothermal} from '../answer.js';
 import {error_rows, failure_rows, scene_cells, time_steps} from '../rows.js';
 import {error_axis, tolerance_line} from './error_axis.js';
 import {error_chart} from './error_chart.js';
@@ -20,7 +21,7 @@ export function error_against_step({result, scene, observable, tolerance, unit, 
     labels,
     legend: {methods: false, orient: 'bottom'},
     x: step_axis(cells),
-    y: error_axis(observable),
+    y: error_axis(observable, is_isothermal(cells)),
     tolerance: tolerance_line(observable, tolerance),
   });
 }

@@ -1,3 +1,4 @@
+import {parts_of} from '../answer.js';
 import {deviation, is_relative, observable_short} from '../format.js';
 
 const units = {
@@ -6,11 +7,12 @@ const units = {
   internal_energy_distance: 'distance from the exact law of internal energies',
 };
 
-export function error_axis(observable) {
+export function error_axis(observable, isothermal = false) {
+  const parts = parts_of(observable, isothermal);
   const title =
-    observable === 'equilibrium'
+    parts.length > 1
       ? 'largest of the three equilibrium errors, %'
-      : `error of ${observable_short(observable)}, %`;
+      : `error of ${observable_short(parts[0])}, %`;
   return {
     title: units[observable] ?? title,
     scale: is_relative(observable) ? 100 : 1,
