@@ -274,7 +274,7 @@ TEST(Scaling, PageTellsWhatLimitsInNumbersOfItsOwn) {
   EXPECT_EQ(scaling["sizes"].size(), 8u);
   EXPECT_EQ(scaling["threads"].size(), 4u);
   EXPECT_EQ(scaling["limits"].size(), 4u);
-  EXPECT_EQ(scaling["terms"].size(), 10u);
+  EXPECT_EQ(scaling["terms"].size(), 12u);
   const std::string page = bench_page(bench);
   EXPECT_NE(page.find("At N = 150 on one thread"), std::string::npos);
   EXPECT_NE(page.find("a &lt; b"), std::string::npos);

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <set>
 
 #include "experiments/answers.hpp"
@@ -11,6 +10,7 @@
 #include "experiments/scene_keys.hpp"
 #include "experiments/study_warnings.hpp"
 #include "tests/json_schema.hpp"
+#include "tests/scratch_folder.hpp"
 
 // Isothermal scenes from the key to the report: what a bath leaves of a result, and what it is
 // compared with.
@@ -18,7 +18,7 @@ namespace driftless {
 namespace {
 
 using nlohmann::json;
-namespace fs = std::filesystem;
+using Folder = testing::ScratchFolder;
 
 Scene read(const json& overrides) { return read_scene(overrides, Location("scene.json", "scene")); }
 
@@ -174,19 +174,6 @@ TEST(IsothermalRelaxation, IsOfTheKineticEnergyAlone) {
 
 // ---- A study with isothermal scenes and another. -----------------------------------------------
 
-class Folder {
- public:
-  explicit Folder(const std::string& name)
-      : path_(fs::path(testing::TempDir()) / ("driftless-isothermal-" + name)) {
-    fs::remove_all(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 Study mixed_study() {
   const json study = {
       {"format", "driftless-study/1"},
@@ -206,7 +193,7 @@ Study mixed_study() {
 
 const json& mixed_result() {
   static const json result = [] {
-    const Folder folder("mixed");
+    const Folder folder("isothermal-mixed");
     return run_campaign(mixed_study(), {folder.path(), 2, "driftless run mixed.json", true});
   }();
   return result;
@@ -338,7 +325,7 @@ TEST(IsothermalRuns, MayWarmUpButNotWithoutEnd) {
       {"duration", {{"equilibrate", 5}, {"measure", 100}, {"sample_every", 1}}},
       {"replicas", 4}};
   const auto status = [&](const std::string& name) {
-    const Folder folder(name);
+    const Folder folder("isothermal-" + name);
     const auto result =
         run_campaign(parse_study(study.dump(), "s.json"), {folder.path(), 1, "", true});
     return result["cells"][0]["status"].get<std::string>();

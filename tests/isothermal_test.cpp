@@ -395,13 +395,13 @@ Estimate kinetic_temperature(const std::string& name, const Options& options, do
   return estimate({samples}, [](const Eigen::VectorXd& m) { return m[0]; });
 }
 
-/// Groot and Warren (1997) found about 1 % too much at the step 0.04 with lambda = 1/2; Euler steps
-/// with the new velocities, and with the old ones, are far off. Seven errors, as these are
-/// estimated themselves.
+/// The heating for which Groot and Warren (1997) brought lambda in: at the step 0.04 and lambda = 1/2
+/// it is 2.5(3) % in runs thirty times as long. The explicit Euler move is far off. Seven errors, as
+/// these are estimated themselves.
 TEST(IsothermalSoftFluid, IsSlightlyTooHotWithGrootAndWarrensScheme) {
   const auto found = kinetic_temperature("groot-warren", {{"lambda", 0.5}}, 0.04);
   EXPECT_LT(found.error, 0.008);
-  EXPECT_NEAR(found.mean, 1.01, 7 * found.error);
+  EXPECT_NEAR(found.mean, 1.025, 7 * found.error);
   const auto euler = kinetic_temperature("averaged-drift", {}, 0.04);
   EXPECT_GT(euler.mean, 1.5);
 }
