@@ -9,9 +9,9 @@ namespace {
 ///   p' = p + sum_j {F^C dt - zeta v e dt + Gamma e dt^{1/2} W}
 ///   u' = u + sum_j {1/2 [zeta v^2 - Gamma^2/(2 mu)] dt - 1/2 v Gamma dt^{1/2} W + q}
 ///   r' = r + v' dt
-/// Conserves momentum; energy in the mean only, to O(dt). In an isothermal fluid it is the scheme of
-/// Marsh and Coveney's isothermal model: a pair alone then has 1/(1 - zeta dt/(2 mu)) of the right
-/// variance of v (derived).
+/// Conserves momentum; energy in the mean only, to O(dt). In an isothermal fluid it is the scheme
+/// of Marsh and Coveney's isothermal model: a pair alone then has 1/(1 - zeta dt/(2 mu)) of the
+/// right variance of v (derived).
 class MarshCoveney : public Integrator {
  public:
   void step(System& system, double dt) override {

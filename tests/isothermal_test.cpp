@@ -395,9 +395,9 @@ Estimate kinetic_temperature(const std::string& name, const Options& options, do
   return estimate({samples}, [](const Eigen::VectorXd& m) { return m[0]; });
 }
 
-/// The heating for which Groot and Warren (1997) brought lambda in: at the step 0.04 and lambda = 1/2
-/// it is 2.5(3) % in runs thirty times as long. The explicit Euler move is far off. Seven errors, as
-/// these are estimated themselves.
+/// The heating for which Groot and Warren (1997) brought lambda in: at the step 0.04 and lambda =
+/// 1/2 it is 2.5(3) % in runs thirty times as long. The explicit Euler move is far off. Seven
+/// errors, as these are estimated themselves.
 TEST(IsothermalSoftFluid, IsSlightlyTooHotWithGrootAndWarrensScheme) {
   const auto found = kinetic_temperature("groot-warren", {{"lambda", 0.5}}, 0.04);
   EXPECT_LT(found.error, 0.008);
