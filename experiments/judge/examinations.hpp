@@ -8,6 +8,7 @@
   EXAMINATION(galilean)                     \
   EXAMINATION(orders)                       \
   EXAMINATION(common_noise)                 \
+  EXAMINATION(deterministic)                \
   EXAMINATION(drift)
 
 namespace driftless::judge {
