@@ -9,6 +9,7 @@
   EXAMINATION(orders)                       \
   EXAMINATION(common_noise)                 \
   EXAMINATION(deterministic)                \
+  EXAMINATION(stability)                    \
   EXAMINATION(drift)
 
 namespace driftless::judge {
