@@ -204,9 +204,10 @@ TEST(Instability, EulerStepsHeatAsTheoryPredicts) {
 const Candidate candidate{{"metropolized-splitting", {}}};
 
 /// Records as the parts would make them, of one seed each.
-Records records(double stable, double unstable, const std::string& cause) {
+Records records(double stable, double unstable, const std::string& cause,
+                const Conditions& conditions = {}) {
   Records all;
-  for (const auto& part : stability.parts(candidate, {})) {
+  for (const auto& part : stability.parts(candidate, conditions)) {
     all[part.name] = {{{"stable", stable},
                        {"unstable", unstable},
                        {"cause", cause},
@@ -238,6 +239,14 @@ TEST(Stability, ReportsThresholds) {
   EXPECT_EQ(conclusion.charts.size(), stability_axes().size());
   ASSERT_EQ(conclusion.tables.size(), 1u);
   EXPECT_EQ(conclusion.tables[0].rows.size(), stability.parts(candidate, {}).size());
+}
+
+TEST(Stability, MapsTwoQuantitiesAtDepthFull) {
+  const Conditions full{Depth::full, 1};
+  const auto conclusion = stability.conclude(candidate, full, records(0.1, 0.12, "broken", full));
+  ASSERT_EQ(conclusion.charts.size(), stability_axes().size() + 1);
+  EXPECT_EQ(conclusion.charts.back().series.size(), 4u);
+  for (const auto& series : conclusion.charts.back().series) EXPECT_EQ(series.points.size(), 6u);
 }
 
 TEST(Stability, NegativeEnergiesAreComparedWithTheEstimates) {

@@ -228,7 +228,7 @@ TEST(Reference, SaysWhyItStopped) {
 // ---- Every method against the reference. --------------------------------------------------------
 
 /// Fewer and longer steps than the bench's: all methods are asked.
-const judge::NoiseFreePlan plan{16, {50, 100, 200, 400}, 1};
+const judge::NoiseFreePlan plan{20, {50, 100, 200, 400}, 1};
 
 judge::Conclusion examined(const Method& method) {
   judge::Records records;
@@ -345,6 +345,13 @@ struct FrictionTooLarge {
     return euler_exchange(fluid, pair, dt);
   }
 };
+/// Beside the error of the step this is nothing; the limit shows it.
+struct FrictionSlightlyTooLarge {
+  Transfer<double> operator()(const Fluid& fluid, Pair<double> pair, double dt) const {
+    pair.w_friction *= 1.003;
+    return euler_exchange(fluid, pair, dt);
+  }
+};
 struct ConductionTooSmall {
   Transfer<double> operator()(const Fluid& fluid, Pair<double> pair, double dt) const {
     pair.w_heat *= 0.95;
@@ -364,6 +371,7 @@ struct HeatToOneAlone {
 TEST(NoiseFreeFaults, AreSeen) {
   EXPECT_EQ(broken_claim(faulty<Correct>()), "");
   EXPECT_NE(broken_claim(faulty<FrictionTooLarge>()), "");
+  EXPECT_NE(broken_claim(faulty<FrictionSlightlyTooLarge>()), "");
   EXPECT_NE(broken_claim(faulty<ConductionTooSmall>()), "");
   EXPECT_NE(broken_claim(faulty<HeatToOneAlone>()), "");
 }

@@ -33,6 +33,11 @@ std::string interval(const Averaged& value) {
                      value.mean + value.half_width());
 }
 
+std::string order_interval(const Averaged& order) {
+  return fmt::format("{:.2f} ({:.2f} to {:.2f})", order.mean, order.mean - order.half_width(),
+                     order.mean + order.half_width());
+}
+
 /// What one case of a method says; `claim` is what the method claims of its order there.
 class Case {
  public:
@@ -106,8 +111,8 @@ class Case {
     finding.sentence = fmt::format(
         "With {} the error falls as the step to the power {}: it is {:.2g} at the step {:.3g}, "
         "and {:.1g} is left when extrapolated to the step zero; {}.",
-        terms_.name(), interval(order_), finest_.mean, time_step(plan_, plan_.steps.size() - 1),
-        limit_.mean,
+        terms_.name(), order_interval(order_), finest_.mean,
+        time_step(plan_, plan_.steps.size() - 1), limit_.mean,
         consistent_ ? fmt::format("claimed is an order of {} at least", claim_)
                     : "no convergence is claimed");
     return finding;
@@ -121,8 +126,9 @@ class Case {
         "With {} it does not converge to the model: the error is {:.2g} at the step {:.3g} and "
         "falls as the step to the power {}. Extrapolated to the step zero the worst internal "
         "energy, of about {:.3g}, is off by {}, the worst velocity by {}.",
-        terms_.name(), finest_.mean, time_step(plan_, plan_.steps.size() - 1), interval(order_),
-        Fluid(small_fluid(terms_, 0)).internal_energy(1.1), interval(internal), interval(velocity));
+        terms_.name(), finest_.mean, time_step(plan_, plan_.steps.size() - 1),
+        order_interval(order_), Fluid(small_fluid(terms_, 0)).internal_energy(1.1),
+        interval(internal), interval(velocity));
     return finding;
   }
 
@@ -154,7 +160,7 @@ std::optional<Finding> claim_finding(const Method& method, const std::vector<Cas
   finding.upper = order.mean + order.half_width();
   finding.sentence = fmt::format(
       "The lowest order of all cases without a potential is {}, with {}; claimed is {}.",
-      interval(order), worst->terms().name(), method.noise_free_order);
+      order_interval(order), worst->terms().name(), method.noise_free_order);
   if (std::abs(away) - order.certain() > order_tolerance) {
     finding.verdict = Verdict::fails;
   } else {
@@ -180,7 +186,7 @@ void report_energies(const Case& one, const NoiseFreePlan& plan, Conclusion& con
         "With {} the {} at the end is off by {} at the step {:.3g}{}.", one.terms().name(),
         name_of(which), interval(error), time_step(plan, plan.steps.size() - 1),
         order.starts == 0 ? ", too little for an order"
-                          : ", falling as the step to the power " + interval(order));
+                          : ", falling as the step to the power " + order_interval(order));
     conclusion.findings.push_back(finding);
   }
 }

@@ -122,7 +122,7 @@ std::string exponent(const std::vector<Deviation>& points) {
   const auto fit = fit_order(points);
   if (!fit || fit->points < 4) return "";
   const double width = fit->error * student_quantile(static_cast<double>(fit->points) - 2, 0.025);
-  return fmt::format(" and follows it to the power {:.2f} ({:.2f} to {:.2f})", fit->order,
+  return fmt::format(", and the steps follow it to the power {:.2f} ({:.2f} to {:.2f})", fit->order,
                      fit->order - width, fit->order + width);
 }
 
@@ -151,10 +151,12 @@ std::optional<Finding> estimate_finding(const StabilityAxis& axis,
   finding.subject = fmt::format("against {} over {}", source, axis.name);
   finding.lower = least;
   finding.upper = most;
+  const auto range = points.size() == 1 ? fmt::format("{:.2g}", least)
+                                        : fmt::format("{:.2g} to {:.2g}", least, most);
   finding.sentence = fmt::format(
-      "Over {} internal energies become negative from steps on that are {:.2g} to {:.2g} times the "
-      "estimate of {}",
-      axis.name, least, most, source);
+      "Over {} internal energies become negative from steps on that are {} times the estimate of "
+      "{}",
+      axis.name, range, source);
   finding.sentence += exponent(points) + ".";
   return finding;
 }
