@@ -10,7 +10,8 @@
   EXAMINATION(common_noise)                 \
   EXAMINATION(deterministic)                \
   EXAMINATION(stability)                    \
-  EXAMINATION(drift)
+  EXAMINATION(drift)                        \
+  EXAMINATION(balance)
 
 namespace driftless::judge {
 

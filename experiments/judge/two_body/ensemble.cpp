@@ -1,5 +1,6 @@
 #include "experiments/judge/two_body/ensemble.hpp"
 
+#include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <set>
 
@@ -16,6 +17,33 @@ void start_far(const Bench& bench, State& state) {
   }
 }
 
+/// A normal variate of the given mean and spread, drawn again until it is between the bounds.
+double draw_between(double lower, double upper, double mean, double spread, NoiseStream& stream) {
+  boost::random::normal_distribution<double> normal(mean, spread);
+  for (;;) {
+    const double value = normal(stream);
+    if (lower < value && value < upper) return value;
+  }
+}
+
+void start_in_cloud(const Bench& bench, const Noise& noise, State& state) {
+  const double shape = bench.law().shape, mass = bench.fluid.mass();
+  const double width = std::sqrt(0.25 / (2 * shape + 1));  // of u_i/(u_i + u_j)
+  const double speed = std::sqrt(bench.law().kinetic_energy(bench.energy) / mass);
+  const double fastest = std::sqrt(0.9 * bench.energy / mass);
+  for (std::size_t i = 0; i < state.size(); i += 2) {
+    auto velocities = noise.particle_stream(state.id[i], Purpose::initial_velocity);
+    auto energies = noise.particle_stream(state.id[i], Purpose::initial_energy);
+    const double v = draw_between(-fastest, fastest, 3 * speed, 0.5 * speed, velocities);
+    const double share = draw_between(0.02, 0.98, 0.5 + 2 * width, 0.5 * width, energies);
+    state.velocity[i] = Vector(v, 0, 0);
+    state.velocity[i + 1] = -state.velocity[i];
+    const double internal = bench.energy - mass * v * v;
+    state.internal_energy[i] = share * internal;
+    state.internal_energy[i + 1] = (1 - share) * internal;
+  }
+}
+
 System build(const Bench& bench, const Pairs& pairs) {
   const Noise noise(pairs.seed, pairs.replica);
   const std::size_t particles = 2 * pairs.count;
@@ -24,6 +52,7 @@ System build(const Bench& bench, const Pairs& pairs) {
       place(box, Layout::pairs, Placement::lattice, particles, bench.pair_distance, noise);
   draw_microcanonical(bench.fluid, Layout::pairs, bench.energy, noise, state);
   if (pairs.start == Start::far) start_far(bench, state);
+  if (pairs.start == Start::cloud) start_in_cloud(bench, noise, state);
   boost_frame(Vector(pairs.frame_velocity, 0, 0), state);
   return {bench.fluid, box, std::move(state), noise, true};
 }
@@ -56,7 +85,7 @@ void Ensemble::step(Integrator& integrator, double dt) {
       const auto failed =
           failure.ids().empty() ? culprits(integrator, dt, 0, size()) : pairs_of(failure);
       if (failed.empty()) throw;
-      give_up(failed);
+      give_up(failed, failure.cause());
       roll_back(integrator, 0, size());
     }
   }
@@ -90,7 +119,8 @@ Noise::PairNormals Ensemble::normals(std::size_t pair, unsigned stage) const {
   return noise_.pair_normals(id, id + 1, stage, true, true);
 }
 
-void Ensemble::give_up(const std::vector<std::size_t>& pairs) {
+void Ensemble::give_up(const std::vector<std::size_t>& pairs, FailureCause cause) {
+  if (!first_failure_) first_failure_ = {cause, step_};
   for (const std::size_t pair : pairs) alive_[pair] = false;
   failed_ += pairs.size();
 }
@@ -105,7 +135,7 @@ void Ensemble::give_up_runaways(Integrator& integrator) {
     if (!(e < 4 && e > 0.25)) runaways.push_back(pair);
   }
   if (runaways.empty()) return;
-  give_up(runaways);
+  give_up(runaways, FailureCause::energy_runaway);
   before_ = system_.motion();
   kept_ = integrator.save();
   roll_back(integrator, 0, size());
