@@ -21,8 +21,8 @@ struct Sizes {
 };
 
 Sizes sizes(Depth depth) {
-  if (depth == Depth::quick) return {{100000, 3}, {6000, 4}, {500, 4}};
-  return {{1000000, 30}, {120000, 80}, {10000, 80}};
+  if (depth == Depth::quick) return {{100000, 3}, {16000, 8}, {600, 4}};
+  return {{1000000, 30}, {160000, 80}, {10000, 70}};
 }
 
 std::vector<Part> parts(const Candidate& candidate, const Conditions& conditions) {
