@@ -6,6 +6,7 @@
 #define DRIFTLESS_EXAMINATIONS(EXAMINATION) \
   EXAMINATION(invariants)                   \
   EXAMINATION(galilean)                     \
+  EXAMINATION(limits)                       \
   EXAMINATION(orders)                       \
   EXAMINATION(common_noise)                 \
   EXAMINATION(deterministic)                \

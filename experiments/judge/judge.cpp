@@ -7,6 +7,7 @@
 
 #include "experiments/files.hpp"
 #include "experiments/interrupt.hpp"
+#include "experiments/judge/trade.hpp"
 #include "experiments/parallel.hpp"
 #include "experiments/processors.hpp"
 #include "experiments/progress.hpp"
@@ -177,6 +178,7 @@ json Judgement::run() {
   for (const auto& candidate : candidates_) {
     judgement["methods"].push_back(method_record(candidate));
   }
+  judgement["trade"] = trade_front(judgement);
   return judgement;
 }
 
