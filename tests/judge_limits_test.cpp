@@ -130,7 +130,7 @@ TEST(Limits, ASoundSchemeHoldsInIsolatedPairs) {
   }
   // What could not be run is not resolved, what is refused has no meaning.
   const auto unseen = finding(
-      conclusion, "the variance of u, ideal fluid, friction closure, with conduction, phi/k = 100");
+      conclusion, "every observable, ideal fluid, friction closure, with conduction, phi/k = 100");
   EXPECT_EQ(unseen.verdict, Verdict::not_resolved);
   EXPECT_NE(unseen.sentence.find("1 of 1 runs failed"), std::string::npos) << unseen.sentence;
   EXPECT_EQ(finding(conclusion, "noise closure").verdict, Verdict::not_applicable);

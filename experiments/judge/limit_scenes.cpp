@@ -10,7 +10,7 @@ struct Tolerance {
 
 // A fault of the fluctuation-dissipation balance by a few per cent of k/phi shows in a temperature
 // as so much, in a variance as a few times that.
-constexpr Tolerance temperature = {0.01, 0.03}, variance = {0.03, 0.1}, skewness = {0.05, 0.15};
+constexpr Tolerance temperature = {0.01, 0.05}, variance = {0.03, 0.15}, skewness = {0.05, 0.25};
 constexpr double distance = 0.009;  // that of the laws of two variances 10 % apart
 
 LimitObservable ratio(const char* name, const char* words, Tolerance tolerance) {
@@ -51,7 +51,7 @@ std::vector<LimitObservable> pairs() {
           ratio("kinetic_energy_square", "the mean square of the kinetic energy", variance),
           ratio("internal_energy_variance", "the variance of u", variance),
           number("internal_energy_third", "the third moment of u (in cubed deviations)", skewness),
-          number("difference", "the mean of u_i - u_j (in deviations)", {0.03, 0.1}),
+          number("difference", "the mean of u_i - u_j (in deviations)", {0.03, 0.15}),
           ratio("difference_square", "the mean square of u_i - u_j", variance),
           ratio("difference_fourth", "the mean fourth power of u_i - u_j", variance)};
 }

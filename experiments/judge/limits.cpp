@@ -72,11 +72,6 @@ struct Case {
   const std::vector<LimitCell>& cells;
 
   std::string subject() const { return observable.words + ", " + scene.name; }
-  bool is_known() const {
-    return std::any_of(cells.begin(), cells.end(), [&](const LimitCell& cell) {
-      return cell.observables.contains(observable.name);
-    });
-  }
 };
 
 /// The finest time steps at which the method can be run: those of the limit.
@@ -111,19 +106,27 @@ std::vector<LimitPoint> with_common_error(const Case& asked) {
   return points;
 }
 
-/// Where too few steps can be run for a limit.
-Finding unseen(const Case& asked) {
+constexpr std::size_t fewest_points = 3;
+
+/// A scene in which too few steps can be run for any limit.
+Finding unseen(const LimitScene& scene, const std::vector<LimitCell>& cells) {
   Finding finding;
-  finding.subject = asked.subject();
+  finding.subject = "every observable, " + scene.name;
   finding.verdict = Verdict::not_resolved;
   std::string failures;
-  for (const auto& cell : asked.cells) {
+  for (const auto& cell : cells) {
     if (!cell.is_whole()) failures = text_of_failure(cell);
   }
   finding.sentence =
-      fmt::format("Its limit cannot be seen: fewer than three time steps can be run; {}.",
-                  failures.empty() ? "averages do not exist" : failures);
+      fmt::format("No limit can be seen in the {}: fewer than {} time steps can be run; {}.",
+                  scene.name, fewest_points, failures);
   return finding;
+}
+
+bool can_be_run(const std::vector<LimitCell>& cells) {
+  const auto whole = std::count_if(cells.begin(), cells.end(),
+                                   [](const LimitCell& cell) { return cell.is_whole(); });
+  return static_cast<std::size_t>(whole) >= fewest_points;
 }
 
 std::string sentence(const Case& asked, const Finding& finding, const Limit& limit, double error) {
@@ -139,8 +142,8 @@ std::string sentence(const Case& asked, const Finding& finding, const Limit& lim
     text = fmt::format(
         "In the limit of vanishing steps {} deviates from its exact value by {} "
         "(95 % interval {} to {})",
-        seen.words, amount(*finding.value, seen), amount(*finding.lower, seen),
-        amount(*finding.upper, seen));
+        seen.words, signed_amount(*finding.value, seen), signed_amount(*finding.lower, seen),
+        signed_amount(*finding.upper, seen));
   }
   const double resolution = seen.is_square ? root(*finding.resolution) : *finding.resolution;
   if (finding.verdict == Verdict::fails) {
@@ -172,7 +175,9 @@ Finding finding_of(const Case& asked, const Candidate& candidate, Depth depth) {
     finding = zero_finding(asked.subject(), limit->value, error, tolerance);
     finding.sentence = sentence(asked, finding, *limit, error);
   } else {
-    finding = unseen(asked);
+    finding.subject = asked.subject();
+    finding.verdict = Verdict::not_resolved;
+    finding.sentence = "Too few runs give an average with an error for a limit.";
   }
   finding.claimed = is_consistent(candidate.method(), candidate.choice.options, asked.scene.fluid);
   return finding;
@@ -280,6 +285,12 @@ Conclusion conclude(const Candidate& candidate, const Conditions& conditions,
   for (const auto& scene : scenes) {
     if (refusal(candidate.method(), scene.fluid)) continue;
     const auto cells = limit_cells(scene, records);
+    if (!can_be_run(cells)) {
+      auto finding = unseen(scene, cells);
+      finding.claimed = is_consistent(candidate.method(), candidate.choice.options, scene.fluid);
+      conclusion.findings.push_back(std::move(finding));
+      continue;
+    }
     for (const auto& observable : limit_observables(scene.family)) {
       const Case asked{scene, observable, cells};
       conclusion.findings.push_back(finding_of(asked, candidate, conditions.depth));
@@ -307,7 +318,7 @@ const Examination limits{
     "a cubic, would move the limit counts as an error too. A deviation beyond five standard errors "
     "fails. "
     "Where five errors are more than 1 % of a temperature, 3 % of a variance or 0.05 of a skewness "
-    "(at depth quick three times as much), or than a distance of 0.009 between distributions "
+    "(at depth quick five times as much), or than a distance of 0.009 between distributions "
     "(that of two variances 10 % apart), nothing is resolved. A step at which over one in twenty "
     "runs fails does not count.",
     parts,
