@@ -12,6 +12,7 @@ namespace {
 
 // A normal variate is beyond `certain` errors on one side with this probability.
 constexpr double certain_tail = 2.87e-7;
+constexpr double suspicious = 3;  // errors
 constexpr std::size_t fewest_points = 3;
 
 /// A deviation as people write it, with its sign or without.
@@ -81,6 +82,7 @@ std::string sentence(const LimitCase& asked, const Finding& finding, const Limit
     text +=
         fmt::format(", {:.1f} standard errors: it is not right", std::abs(*finding.value) / error);
   } else {
+    if (std::abs(*finding.value) > suspicious * error) text += ", which is suspicious";
     text += fmt::format("; {} or more would have been certain", amount(resolution, seen));
   }
   if (limit.model_error > limit.error) {
@@ -117,6 +119,9 @@ Finding limit_finding(const LimitCase& asked, Depth depth) {
     const auto& seen = asked.observable;
     const double tolerance = depth == Depth::quick ? seen.quick_tolerance : seen.tolerance;
     finding = zero_finding(asked.subject(), limit->value, error, tolerance);
+    // Not certain, yet too far off for saying that it is right.
+    const bool hint = std::abs(limit->value) > suspicious * error;
+    if (hint && finding.verdict == Verdict::holds) finding.verdict = Verdict::not_resolved;
     finding.sentence = sentence(asked, finding, *limit, error);
   } else {
     finding.subject = asked.subject();
