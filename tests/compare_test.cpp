@@ -216,6 +216,12 @@ TEST(Compare, TimesAreComparedOnOneProcessorAlone) {
   EXPECT_EQ(cost["methods"][1]["verdict"], "same");
   EXPECT_EQ(compare(is, was)["cost"]["methods"][0]["verdict"], "faster");
   EXPECT_EQ(compare(was, is)["verdict"], "same") << "time is no part of the verdict";
+  // Timings that scatter by 2 units of a cost of 15 say less.
+  json scattered = result_of({{.method = "one", .cost = 15}}), slow = scattered;
+  scattered["cells"][0]["cost"]["core_seconds_per_time"] = 12;
+  EXPECT_EQ(compare(scattered, slow)["cost"]["methods"][0]["verdict"], "slower");
+  slow["cells"][0]["cost"]["spread"] = 2;
+  EXPECT_EQ(compare(scattered, slow)["cost"]["methods"][0]["verdict"], "same");
   is["provenance"]["cpu"] = "another CPU";
   EXPECT_EQ(compare(was, is)["cost"]["reason"], "cpu is \"a CPU\" in BASE, \"another CPU\" in NEW");
 }

@@ -23,9 +23,10 @@ double seconds(const json& cell) {
   return value.is_number() ? value.get<double>() : 0.0;
 }
 
-double spread(const json& cell) {
+/// Over the cost itself.
+double relative_spread(const json& cell) {
   const auto value = cell["cost"].value("spread", json());
-  return value.is_number() ? value.get<double>() : 0.0;
+  return value.is_number() ? value.get<double>() / seconds(cell) : 0.0;
 }
 
 json method_record(const std::string& method, Timings timings) {
@@ -60,7 +61,8 @@ json cost_changes(const json& base, const json& changed, const std::vector<Commo
     if (one <= 0 || other <= 0) continue;
     auto& timings = methods[(*cell.base)["method"]];
     timings.log_ratios += std::log(other / one);
-    timings.spreads.push_back(std::hypot(spread(*cell.base), spread(*cell.changed)));
+    timings.spreads.push_back(
+        std::hypot(relative_spread(*cell.base), relative_spread(*cell.changed)));
   }
   json records = json::array();
   for (auto& [method, timings] : methods) records.push_back(method_record(method, timings));

@@ -4,7 +4,8 @@
 
 namespace driftless {
 
-/// The texts of result.schema.json and comparison.schema.json, which the build puts into the program.
+/// The texts of result.schema.json and comparison.schema.json, which the build puts into the
+/// program.
 std::string_view result_schema_text();
 std::string_view comparison_schema_text();
 
