@@ -10,9 +10,9 @@
   EXAMINATION(orders)                       \
   EXAMINATION(common_noise)                 \
   EXAMINATION(deterministic)                \
+  EXAMINATION(balance)                      \
   EXAMINATION(stability)                    \
-  EXAMINATION(drift)                        \
-  EXAMINATION(balance)
+  EXAMINATION(drift)
 
 namespace driftless::judge {
 
