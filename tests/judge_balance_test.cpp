@@ -97,10 +97,13 @@ TEST(EntropyCourse, FindsWhenTheEntropyFalls) {
   EXPECT_GT(course.fall.to, 30U);
 }
 
-TEST(PairBins, HaveTheMassesOfTheExactLaw) {
+class PairBins : public testing::TestWithParam<bool> {};
+
+TEST_P(PairBins, HaveTheMassesOfTheExactLaw) {
   const auto bench =
-      two_body::make_bench(10, FrictionClosure::noise, HeatForm::inverse_temperature);
-  const two_body::PairBins bins(bench.law().shape);
+      GetParam() ? two_body::make_isothermal_bench()
+                 : two_body::make_bench(10, FrictionClosure::noise, HeatForm::inverse_temperature);
+  const two_body::PairBins bins(bench);
   double total = 0;
   for (const double mass : bins.log_mass()) total += std::exp(mass);
   EXPECT_NEAR(total, 1, 1e-12);
@@ -114,6 +117,10 @@ TEST(PairBins, HaveTheMassesOfTheExactLaw) {
   const double error = 1.5 * std::sqrt(occupied / 2) / 50000;
   EXPECT_NEAR(relative_entropy(counts, bins.log_mass()), 0, z_bound * error);
 }
+
+INSTANTIATE_TEST_SUITE_P(Pairs, PairBins, testing::Bool(), [](const auto& tested) {
+  return tested.param ? "isothermal" : "with_internal_energies";
+});
 
 /// Copies of a walk on three states that goes round with `clockwise`, else the other way round; as
 /// a series of the indicators of the first two states and as transitions.
@@ -211,6 +218,7 @@ Candidate planted(std::string_view name) {
     method.name = name;
     method.title = "planted";
     method.closures = {FrictionClosure::noise};
+    method.isothermal = true;
     method.make = [](const Options&) -> std::unique_ptr<Integrator> {
       return std::make_unique<Explicit<Kernel>>();
     };
@@ -260,6 +268,30 @@ TEST(Balance, EntropyFallsWithoutNoise) {
   const auto conclusion = conclusion_of(planted<WithoutNoise>("planted-without-noise"),
                                         {"entropy of " + pairs_of_noise + ", step 0.4"});
   const auto& finding = finding_of(conclusion, "entropy of " + pairs_of_noise + ", step 0.4");
+  EXPECT_EQ(finding.verdict, Verdict::fails) << finding.sentence;
+}
+
+/// Runs isothermal pairs with a free energy that is claimed to fall at any step.
+Candidate sound_isothermal() {
+  for (const Method* method : methods()) {
+    if (method->isothermal_pair_law_exact) return {{std::string(method->name), {}}};
+  }
+  throw std::logic_error("no method claims Maxwell's law of isolated pairs");
+}
+
+TEST(Balance, FreeEnergyOfAMethodThatIsExactForIsothermalPairsOnlyFalls) {
+  const std::string part = "free energy of isothermal pairs, step 0.8";
+  const auto conclusion = conclusion_of(sound_isothermal(), {part});
+  const auto& finding = finding_of(conclusion, part);
+  EXPECT_EQ(finding.verdict, Verdict::holds) << finding.sentence;
+  EXPECT_TRUE(finding.claimed.value_or(false));
+  EXPECT_EQ(finding.unit, "k T");
+}
+
+TEST(Balance, FreeEnergyRisesWithoutNoise) {
+  const std::string part = "free energy of isothermal pairs, step 0.4";
+  const auto conclusion = conclusion_of(planted<WithoutNoise>("planted-without-noise"), {part});
+  const auto& finding = finding_of(conclusion, part);
   EXPECT_EQ(finding.verdict, Verdict::fails) << finding.sentence;
 }
 

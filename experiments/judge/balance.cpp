@@ -39,7 +39,8 @@ std::vector<Part> parts(const Candidate& candidate, const Conditions& conditions
             return run_entropy_course(candidate, asked.bench, step, count, seed);
           });
     }
-    for (const double step : pair_steps()) {
+    // The moments are of shares of the energy, which isothermal pairs do not keep.
+    for (const double step : is_reversed(asked) ? pair_steps() : std::vector<double>()) {
       add(reversal_part(asked.name, step), size.pairs.seconds * pair_steps().back() / step,
           [=, count = size.pairs.count](std::uint64_t seed) {
             return run_pair_reversal(candidate, asked.bench, step, count, seed);
@@ -87,11 +88,18 @@ std::vector<PairCase> pair_cases(const Candidate& candidate) {
                        bench, conduction > 0});
     }
   }
+  const auto isothermal = two_body::make_isothermal_bench();
+  if (!refusal(candidate.method(), isothermal.fluid)) {
+    cases.push_back({"isothermal pairs", isothermal, true});
+  }
   return cases;
 }
 
+bool is_reversed(const PairCase& asked) { return !asked.bench.fluid.isothermal(); }
+
 std::vector<FluidCase> fluid_cases(const Candidate& candidate) {
-  const auto pairs = pair_cases(candidate);
+  auto pairs = pair_cases(candidate);
+  std::erase_if(pairs, [](const PairCase& asked) { return !is_reversed(asked); });
   if (pairs.empty()) return {};
   FluidParameters fluid;
   fluid.heat_capacity = phi_over_k;
@@ -119,7 +127,8 @@ const std::vector<double>& fluid_steps() {
 }
 
 std::string entropy_part(const PairCase& asked, double step) {
-  return fmt::format("entropy of {}, step {}", asked.name, step);
+  const char* quantity = asked.bench.fluid.isothermal() ? "free energy" : "entropy";
+  return fmt::format("{} of {}, step {}", quantity, asked.name, step);
 }
 
 std::string reversal_part(const std::string& case_name, double step) {
@@ -139,7 +148,9 @@ const Examination balance{
         "bins are narrower than the cloud, so that what is lost between them is a few per cent of "
         "the changes: a chain that keeps the exact law can show no fall, and a fall beyond the "
         "noise - counted for all pairs of times - says that the method leads away from the exact "
-        "law. In the stationary state <f(t) g(t + tau)> is compared with its reversed twin for "
+        "law. Of isothermal pairs the functional F[P] = <H> + k T <ln P> [7, 8] may only fall, by "
+        "the same histogram of the velocity alone. In the stationary state <f(t) g(t + tau)> is "
+        "compared with its reversed twin for "
         "moments f, g of pairs and of the particles of a small ideal fluid, by Hotelling's T^2 "
         "over "
         "all moments, which takes their correlation into account, and transitions of pairs "

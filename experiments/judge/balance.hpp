@@ -13,7 +13,7 @@ namespace driftless::judge {
 struct PairCase {
   std::string name;  ///< "pairs with friction alone, closure noise"
   two_body::Bench bench;
-  bool relaxes;  ///< to the exact law, by friction and conduction
+  bool relaxes;  ///< to the exact law, by friction and conduction or a bath
 };
 
 /// Small fluids of one kind.
@@ -23,9 +23,11 @@ struct FluidCase {
 };
 
 /// For every closure that the method is built for, with friction and conduction; with friction
-/// alone where it claims to keep the energy.
+/// alone where it claims to keep the energy; isothermal ones if it runs such fluids.
 std::vector<PairCase> pair_cases(const Candidate& candidate);
-/// For the last of them; none if there is none.
+/// Whether stationary pairs are looked at forwards and backwards: all but isothermal ones.
+bool is_reversed(const PairCase& asked);
+/// For the last closure; none if there is none.
 std::vector<FluidCase> fluid_cases(const Candidate& candidate);
 
 /// The steps at which S[P](t) is followed, in relaxation times of a pair, and those of the two
@@ -34,7 +36,7 @@ const std::vector<double>& entropy_steps();
 const std::vector<double>& pair_steps();
 const std::vector<double>& fluid_steps();
 
-/// The names of a case's parts.
+/// The names of a case's parts, "entropy of ..." or "free energy of ..." and "reversal of ...".
 std::string entropy_part(const PairCase& asked, double step);
 std::string reversal_part(const std::string& case_name, double step);
 

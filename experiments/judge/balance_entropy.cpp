@@ -31,15 +31,31 @@ double certain_of_many(double comparisons) {
   return -quantile(normal, cdf(normal, -certain) / comparisons);
 }
 
+/// S[P] of pairs that keep their energy may only rise, F[P] of isothermal ones only fall.
+struct Words {
+  const char *quantity, *unit, *right, *wrong, *side, *law;
+};
+
+Words words_of(const PairCase& asked) {
+  if (asked.bench.fluid.isothermal())
+    return {"F[P]", "k T", "falls", "rise", "above", "Maxwell's law"};
+  return {"S[P]", "k", "rises", "fall", "below", "the exact law"};
+}
+
+bool claimed(const PairCase& asked, const Method& method) {
+  return asked.bench.fluid.isothermal() ? method.isothermal_pair_law_exact : method.pair_law_exact;
+}
+
 Finding finding_of(const PairCase& asked, double step, const Candidate& candidate,
                    const json& record) {
   Finding finding;
-  finding.subject = fmt::format("entropy of {}, step {:g}", asked.name, step);
-  finding.unit = "k";
-  if (candidate.method().pair_law_exact) finding.claimed = true;
+  const Words words = words_of(asked);
+  finding.subject = entropy_part(asked, step);
+  finding.unit = words.unit;
+  if (claimed(asked, candidate.method())) finding.claimed = true;
   if (!record.contains("relative")) {
     finding.verdict = Verdict::reported;
-    finding.sentence = "S[P](t) cannot be followed." + failures(record);
+    finding.sentence = std::string(words.quantity) + "(t) cannot be followed." + failures(record);
     return finding;
   }
   const auto times = record["times"].get<std::vector<double>>();
@@ -56,24 +72,23 @@ Finding finding_of(const PairCase& asked, double step, const Candidate& candidat
   finding.resolution = needed * std::sqrt(2.0) * end_error;
   const bool falls = depth > needed * error;
   const bool selected = record["failed"].get<double>() > most_failed;
-  const std::string rise = fmt::format(
-      "S[P] rises by {:.4g} k in {:g} relaxation times, to {:.2g} +- {:.1g} k below "
-      "that of the exact law",
-      relative.front() - relative.back(), times.back(), relative.back(),
-      interval_quantile * end_error);
+  const std::string course = fmt::format(
+      "{} {} by {:.4g} {} in {:g} relaxation times, to {:.2g} +- {:.1g} {} {} that of {}",
+      words.quantity, words.right, relative.front() - relative.back(), words.unit, times.back(),
+      relative.back(), interval_quantile * end_error, words.unit, words.side, words.law);
   const std::string clearest =
-      fmt::format("{:.3g} +- {:.2g} k from t = {:g} to t = {:g} ({:.1f} standard errors)", depth,
-                  interval_quantile * error, from, to, depth / error);
+      fmt::format("{:.3g} +- {:.2g} {} from t = {:g} to t = {:g} ({:.1f} standard errors)", depth,
+                  interval_quantile * error, words.unit, from, to, depth / error);
   if (falls) {
     finding.verdict = Verdict::fails;
-    finding.sentence = fmt::format("{}, but falls by {}.", rise, clearest);
+    finding.sentence = fmt::format("{}, but {}s by {}.", course, words.wrong, clearest);
   } else {
     const bool sharp = *finding.resolution <= tolerance;
     finding.verdict = sharp ? Verdict::holds : Verdict::not_resolved;
     finding.sentence = fmt::format(
-        "{}, and does not fall beyond the noise: at the clearest by {}; "
-        "near equilibrium a fall of {:.1g} k would be certain.",
-        rise, clearest, *finding.resolution);
+        "{}, and does not {} beyond the noise: at the clearest by {}; near equilibrium a {} of "
+        "{:.1g} {} would be certain.",
+        course, words.wrong, clearest, words.wrong, *finding.resolution, words.unit);
   }
   if (selected) finding.verdict = Verdict::reported;
   finding.sentence += failures(record);
@@ -100,10 +115,13 @@ Series series_of(double step, const json& record) {
 void conclude_entropy(const Candidate& candidate, const Records& records, Conclusion& conclusion) {
   for (const auto& asked : pair_cases(candidate)) {
     if (!asked.relaxes) continue;
-    Chart chart{"How far S[P](t) is below its equilibrium, " + asked.name,
-                {"time, relaxation times"},
-                {"S of the exact law - S[P](t), k", true},
-                {}};
+    const Words words = words_of(asked);
+    Chart chart{
+        fmt::format("How far {}(t) is {} its equilibrium, {}", words.quantity, words.side,
+                    asked.name),
+        {"time, relaxation times"},
+        {fmt::format("distance of {} from {}, {}", words.quantity, words.law, words.unit), true},
+        {}};
     for (const double step : entropy_steps()) {
       const auto found = records.find(entropy_part(asked, step));
       if (found == records.end()) continue;

@@ -185,7 +185,7 @@ std::vector<std::string> pair_reversal_columns() {
 
 json run_entropy_course(const Candidate& candidate, const Bench& bench, double time_step,
                         std::size_t copies, std::uint64_t seed) {
-  const two_body::PairBins bins(bench.law().shape);
+  const two_body::PairBins bins(bench);
   const double period = std::max(entropy_period, time_step);
   BinnedCopies binned;
   for (double time = 0; time < entropy_until + period / 2; time += period) {

@@ -225,6 +225,7 @@ Series series_of(const Ladder& ladder) {
 void conclude_reversal(const Candidate& candidate, const Records& records, Conclusion& conclusion) {
   std::vector<Ladder> ladders;
   for (const auto& asked : pair_cases(candidate)) {
+    if (!is_reversed(asked)) continue;
     ladders.push_back(ladder_of(asked.name, asked.bench.fluid.parameters(), pair_reversal_columns(),
                                 pair_steps(), records));
   }

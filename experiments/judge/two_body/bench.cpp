@@ -21,4 +21,15 @@ Bench make_bench(double phi_over_k, FrictionClosure closure, HeatForm form,
   return {fluid, distance, law.energy_at(f.temperature)};
 }
 
+Bench make_isothermal_bench() {
+  FluidParameters f;
+  f.boltzmann = 0.5;
+  f.mass = 2.4;
+  f.temperature = 1.3;
+  f.isothermal = true;
+  const double distance = 0.4, weight = (1 - distance) * (1 - distance);
+  f.friction = 0.5 * f.mass / weight;  // zeta w/mu = 1
+  return {Fluid(f), distance, 0.5 * f.boltzmann * f.temperature};
+}
+
 }  // namespace driftless::two_body

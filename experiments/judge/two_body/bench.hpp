@@ -22,6 +22,10 @@ struct Bench {
 Bench make_bench(double phi_over_k, FrictionClosure closure, HeatForm form,
                  double conduction_rate = 1);
 
+/// A pair with a bath in the place of internal energies, whose relative velocity relaxes at unit
+/// rate; its energy is the mean kinetic one, k T/2.
+Bench make_isothermal_bench();
+
 /// What a pair is now: energies and relative velocity, the centre of mass's motion left out.
 struct PairView {
   double velocity;  ///< (v_i - v_j).e

@@ -10,6 +10,8 @@ namespace {
 using boost::math::ibeta;
 using boost::math::ibetac;
 
+constexpr int most_thermal_speeds = 8;
+
 int even_number(double range, double width) {
   return 2 * static_cast<int>(std::ceil(range / width / 2));
 }
@@ -33,7 +35,16 @@ int place(double position, int bins) {
 
 }  // namespace
 
-PairBins::PairBins(double shape) {
+PairBins::PairBins(const Bench& bench) {
+  if (bench.fluid.isothermal()) {
+    thermal_speed_ = std::sqrt(bench.thermal_energy() / bench.fluid.reduced_mass());
+    velocities_ = 6 * most_thermal_speeds;
+    log_mass_ = log_masses(velocities_, [](double s) {
+      return s > 0 ? 0.5 * std::erfc(most_thermal_speeds * (1 - 2 * s) / std::sqrt(2.0)) : 0;
+    });
+    return;
+  }
+  const double shape = bench.law().shape;
   const double total = 2 * shape + 0.5;
   velocities_ = even_number(2, std::sqrt(0.5 / total) / 3);
   shares_ = even_number(1, std::sqrt(0.25 / (2 * shape + 1)) / 3);
@@ -48,6 +59,10 @@ PairBins::PairBins(double shape) {
 }
 
 std::uint16_t PairBins::bin(const PairView& pair) const {
+  if (thermal_speed_ > 0) {
+    const double speeds = pair.velocity / thermal_speed_ / most_thermal_speeds;
+    return static_cast<std::uint16_t>(place(0.5 * (1 + speeds), velocities_));
+  }
   const double share = std::sqrt(pair.kinetic / pair.energy());
   const int row = place(0.5 * (1 + std::copysign(share, pair.velocity)), velocities_);
   const int column = place(pair.u_i / (pair.u_i + pair.u_j), shares_);

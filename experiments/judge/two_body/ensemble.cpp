@@ -26,7 +26,18 @@ double draw_between(double lower, double upper, double mean, double spread, Nois
   }
 }
 
+void start_isothermal_cloud(const Bench& bench, const Noise& noise, State& state) {
+  const double speed = std::sqrt(bench.energy / bench.fluid.mass());  // of either particle
+  boost::random::normal_distribution<double> normal(3 * speed, 0.5 * speed);
+  for (std::size_t i = 0; i < state.size(); i += 2) {
+    auto velocities = noise.particle_stream(state.id[i], Purpose::initial_velocity);
+    state.velocity[i] = Vector(normal(velocities), 0, 0);
+    state.velocity[i + 1] = -state.velocity[i];
+  }
+}
+
 void start_in_cloud(const Bench& bench, const Noise& noise, State& state) {
+  if (bench.fluid.isothermal()) return start_isothermal_cloud(bench, noise, state);
   const double shape = bench.law().shape, mass = bench.fluid.mass();
   const double width = std::sqrt(0.25 / (2 * shape + 1));  // of u_i/(u_i + u_j)
   const double speed = std::sqrt(bench.law().kinetic_energy(bench.energy) / mass);
@@ -50,7 +61,11 @@ System build(const Bench& bench, const Pairs& pairs) {
   const Box box = make_box(bench.fluid, Layout::pairs, particles, 1, bench.pair_distance);
   State state =
       place(box, Layout::pairs, Placement::lattice, particles, bench.pair_distance, noise);
-  draw_microcanonical(bench.fluid, Layout::pairs, bench.energy, noise, state);
+  if (bench.fluid.isothermal()) {
+    draw_canonical(bench.fluid, Layout::pairs, bench.fluid.parameters().temperature, noise, state);
+  } else {
+    draw_microcanonical(bench.fluid, Layout::pairs, bench.energy, noise, state);
+  }
   if (pairs.start == Start::far) start_far(bench, state);
   if (pairs.start == Start::cloud) start_in_cloud(bench, noise, state);
   boost_frame(Vector(pairs.frame_velocity, 0, 0), state);
@@ -128,6 +143,7 @@ void Ensemble::give_up(const std::vector<std::size_t>& pairs, FailureCause cause
 /// Explicit methods can throw a copy to an energy from where it hardly comes back, without any
 /// number being illegal: four times the energy, or a quarter, is a failure too.
 void Ensemble::give_up_runaways(Integrator& integrator) {
+  if (bench_.fluid.isothermal()) return;  // the energy fluctuates by as much as it is
   std::vector<std::size_t> runaways;
   for (std::size_t pair = 0; pair < size(); ++pair) {
     if (!alive_[pair]) continue;
