@@ -144,6 +144,12 @@ void run(const Arguments& arguments) {
                directory);
 }
 
+void print_judgement(const nlohmann::json& judgement, const fs::path& directory) {
+  const auto page = judge::write_judgement(judgement, directory);
+  fmt::print("{}\nPage: {}\n", judge::judgement_summary(judgement),
+             fs::absolute(page).lexically_normal().string());
+}
+
 void run_judge(const JudgeArguments& arguments) {
   const auto candidates = judge::read_candidates(arguments.methods);
   const auto examinations = judge::read_examinations(arguments.examinations);
@@ -159,19 +165,18 @@ void run_judge(const JudgeArguments& arguments) {
   const auto judgement = judge::run_judgement(
       candidates, examinations,
       {directory, {depth, arguments.seed}, arguments.threads, command, arguments.quiet});
-  const auto page = judge::write_judgement(judgement, directory);
-  fmt::print("{}\nPage: {}\n", judge::judgement_summary(judgement),
-             fs::absolute(page).lexically_normal().string());
+  print_judgement(judgement, directory);
 }
 
 void report(const Arguments& arguments) {
   const fs::path given = arguments.result;
-  const auto result = read_result(given);
+  const auto judgement = judge::read_judgement(given);
+  const auto result = judgement ? *judgement : read_result(given);
   fs::path directory = fs::is_directory(given) ? given : given.parent_path();
   if (!arguments.directory.empty()) directory = arguments.directory;
   std::error_code error;
   if (!directory.empty()) fs::create_directories(directory, error);
-  print_report(result, directory);
+  judgement ? print_judgement(result, directory) : print_report(result, directory);
 }
 
 struct ComparedFiles {
@@ -233,8 +238,11 @@ int main(int argc, char** argv) {
   check_command->add_option("study", arguments.study, "study file (JSON)")->required();
   check_command->callback([&] { check(arguments); });
 
-  auto* report_command = app.add_subcommand("report", "write a result's page and summary anew");
-  report_command->add_option("result", arguments.result, "result.json or its folder")->required();
+  auto* report_command =
+      app.add_subcommand("report", "write the page and summary of a result or a judgement anew");
+  report_command
+      ->add_option("result", arguments.result, "result.json, judgement.json or their folder")
+      ->required();
   report_command->add_option("-o,--output", arguments.directory, "another folder");
   report_command->callback([&] { report(arguments); });
 

@@ -89,6 +89,12 @@ TEST(Judge, WritesAReportOfEveryMethod) {
   const auto page = write_judgement(judgement, folder.path());
   EXPECT_TRUE(fs::exists(page));
   EXPECT_TRUE(fs::exists(folder.path() / "judgement.json"));
+  const auto read = read_judgement(folder.path());
+  ASSERT_TRUE(read);
+  EXPECT_EQ(*read, judgement);
+  EXPECT_FALSE(read_judgement(folder.path() / "parts"));
+  write_atomically(folder.path() / "judgement.json", "{\"format\": \"another\"}");
+  EXPECT_THROW(read_judgement(folder.path()), InputError);
   const auto summary = judgement_summary(judgement);
   EXPECT_NE(summary.find("| groot-warren:lambda=0.5 | fails |"), std::string::npos) << summary;
   EXPECT_NE(summary.find("The sum is there. (claimed otherwise)"), std::string::npos) << summary;

@@ -2,12 +2,15 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/judge/examination.hpp"
 
 namespace driftless::judge {
+
+inline constexpr const char* judgement_format = "driftless-judgement/1";
 
 struct JudgeOptions {
   std::filesystem::path directory;  ///< gets the judgement, its reports and the finished parts
@@ -36,8 +39,12 @@ nlohmann::json run_judgement(const std::vector<Candidate>& candidates,
 /// fails.
 std::string judgement_summary(const nlohmann::json& judgement);
 
-/// Writes judgement.json, index.html (the page) and summary.md into a folder; returns the page's
-/// path.
+/// The judgement of a folder, if that is what the folder (or the file) holds. Throws InputError if
+/// it cannot be read.
+std::optional<nlohmann::json> read_judgement(const std::filesystem::path& file_or_folder);
+
+/// Writes judgement.json, index.html (the page) and summary.md into a folder, numbers to six
+/// digits, which is more than any of them is known to; returns the page's path.
 /// Throws InputError if they cannot be written.
 std::filesystem::path write_judgement(const nlohmann::json& judgement,
                                       const std::filesystem::path& directory);

@@ -3,6 +3,7 @@
 #include "experiments/files.hpp"
 #include "experiments/judge/judge.hpp"
 #include "experiments/page.hpp"
+#include "experiments/text_file.hpp"
 
 namespace driftless::judge {
 namespace {
@@ -44,7 +45,29 @@ std::string failures(const json& judgement) {
   return text.empty() ? "Nothing fails.\n" : text;
 }
 
+json rounded(const json& value) {
+  if (value.is_number_float()) return std::stod(fmt::format("{:.6g}", value.get<double>()));
+  json copy = value;
+  if (value.is_structured()) {
+    for (auto& part : copy) part = rounded(part);
+  }
+  return copy;
+}
+
 }  // namespace
+
+std::optional<json> read_judgement(const std::filesystem::path& file_or_folder) {
+  const auto file = std::filesystem::is_directory(file_or_folder)
+                        ? file_or_folder / "judgement.json"
+                        : file_or_folder;
+  if (file.filename() != "judgement.json" || !std::filesystem::exists(file)) return {};
+  auto judgement = json::parse(read_text_file(file.string()), nullptr, false);
+  if (!judgement.is_object() || judgement.value("format", "") != judgement_format) {
+    throw InputError(
+        fmt::format("{}: is no judgement of format {}", file.string(), judgement_format));
+  }
+  return judgement;
+}
 
 std::string judgement_summary(const json& judgement) {
   return fmt::format("# Judgement ({})\n\n{}\n## What fails\n\n{}",
@@ -52,10 +75,10 @@ std::string judgement_summary(const json& judgement) {
                      failures(judgement));
 }
 
-std::filesystem::path write_judgement(const json& judgement,
-                                      const std::filesystem::path& directory) {
+std::filesystem::path write_judgement(const json& exact, const std::filesystem::path& directory) {
+  const json judgement = rounded(exact);
   const auto page = directory / "index.html";
-  write_atomically(directory / "judgement.json", judgement.dump(1) + "\n");
+  write_atomically(directory / "judgement.json", judgement.dump() + "\n");
   write_atomically(directory / "summary.md", judgement_summary(judgement));
   write_atomically(page, render_judgement_page(judgement));
   return page;
