@@ -111,6 +111,18 @@ TEST(JudgeDrift, DriftsByTheoryHoldAndOthersFail) {
   EXPECT_EQ(verdict_on("term of third order", biased), Verdict::fails);
 }
 
+TEST(JudgeDrift, WhereEveryRunBreaksThatIsSaid) {
+  const Candidate candidate{{"averaged-drift", {}}};
+  Records records;
+  for (const auto& part : drift.parts(candidate, {})) {
+    records[part.name] = {{"failures", {"energy ran away"}}};
+  }
+  const auto conclusion = drift.conclude(candidate, {}, records);
+  EXPECT_EQ(overall(conclusion), Verdict::not_resolved);
+  EXPECT_EQ(conclusion.findings.size(), records.size() + 1);
+  EXPECT_NE(conclusion.findings.back().sentence.find("energy ran away"), std::string::npos);
+}
+
 TEST(JudgeDrift, MethodsThatKeepEnergyHaveNothingToMeasure) {
   const Candidate exact{{"isoenergetic-verlet", {}}};
   EXPECT_TRUE(drift.parts(exact, {}).empty());

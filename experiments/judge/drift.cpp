@@ -241,6 +241,8 @@ Finding sign_finding(const std::vector<Measured>& all, bool theory_applies) {
 Finding frictionless_finding(const std::vector<Measured>& frictional) {
   Finding finding;
   finding.subject = "drift without friction";
+  finding.verdict = Verdict::not_resolved;
+  finding.sentence = fmt::format("Runs without friction broke at step {:g}.", usual_step);
   for (const auto& one : frictional) {
     if (one.setting.friction > 0) continue;
     finding = zero_finding(finding.subject, one.drift, one.error, 0.1 * usual_drift);
@@ -418,6 +420,15 @@ std::vector<Finding> failures(const Conditions& conditions, const Records& recor
   return findings;
 }
 
+Conclusion every_run_broke(const Conditions& conditions, const Records& records) {
+  Conclusion conclusion;
+  conclusion.findings = failures(conditions, records);
+  conclusion.findings.insert(conclusion.findings.begin(),
+                             {"energy drift", Verdict::not_resolved,
+                              "Not one setting's runs all ended: there is no drift to speak of."});
+  return conclusion;
+}
+
 Conclusion conclude(const Candidate& candidate, const Conditions& conditions,
                     const Records& records) {
   if (records.empty()) return without_drift(candidate);
@@ -425,6 +436,7 @@ Conclusion conclude(const Candidate& candidate, const Conditions& conditions,
   const bool by_verlet_alone = method.energy_ideal == EnergyClaim::exact;
   const bool theory_applies = by_verlet_alone && method.pair_law_exact;
   const auto all = measured(conditions.depth, records);
+  if (all.empty()) return every_run_broke(conditions, records);
   const auto large = along_steps(all, usual_capacity), small = along_steps(all, small_capacity);
   const auto still = along_steps(all, usual_capacity, 0);
   Conclusion conclusion;

@@ -71,6 +71,7 @@ export function chart_spec(chart, labels = chart.series.map(({name}) => name)) {
     data: {values: rows.map(cut)},
     layer: [
       {
+        transform: [{filter: "datum.marks !== 'apart'"}],
         mark: {type: 'line', strokeWidth: 1.4},
         encoding: {x, y, stroke, order: {field: 'x', type: 'quantitative'}, opacity},
       },
@@ -126,24 +127,24 @@ export function shared_series(methods, examination) {
   return [...counted].filter(([, count]) => count > 1).map(([key]) => JSON.parse(key));
 }
 
-// The points of a scene and an observable, and the front through them.
+// The points of a scene and an observable, at what the error is at most, and the front through them.
 export function trade_chart(trade, scene, observable) {
   const entry = trade.find((one) => one.scene === scene && one.observable === observable);
   if (!entry) return null;
   const names = [...new Set(entry.points.map(({method}) => method))];
-  const point = ({cost, error, lower, upper}) => ({x: cost, y: error, lower, upper});
+  const point = ({cost, lower, upper}) => ({x: cost, y: upper, lower, upper});
   const front = entry.points.filter(({on_front}) => on_front).sort((a, b) => a.cost - b.cost);
   return {
     title: `${scene}, ${observable}`,
     x: {title: 'cost, core-seconds per unit of time', logarithmic: true},
-    y: {title: 'error', logarithmic: true},
+    y: {title: 'error, at most (95 %)', logarithmic: true},
     series: [
       ...names.map((name) => ({
         name,
-        marks: 'points',
+        marks: 'apart',
         points: entry.points.filter(({method}) => method === name).map(point),
       })),
-      {name: 'front', marks: 'line', points: front.map(({cost, error}) => ({x: cost, y: error}))},
+      {name: 'front', marks: 'line', points: front.map(({cost, upper}) => ({x: cost, y: upper}))},
     ],
   };
 }
