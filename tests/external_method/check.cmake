@@ -1,5 +1,5 @@
 # Does what somebody with a method of their own does: installs Driftless, compiles the method against
-# it, lists it, runs a study of it, and holds it to the suites. Then the same once more, compiled for
+# it, lists it, runs a study of it, has it judged, and holds it to the suites. Then the same once more, compiled for
 # the processor at hand, and so perhaps for other instructions than the library.
 #
 # cmake -DBUILD=... -DSCRATCH=... -DCOMPILER=... -DINVARIANTS=... -DGENERATOR=... -P check.cmake
@@ -57,6 +57,10 @@ string(JSON instructions GET "${result}" provenance instructions)
 expect("${method} ${status}" "^example-euler ok$")
 expect("${command}" "--methods ${module}")
 expect("${instructions}" "^[A-Z]")
+
+call(${program} --methods ${module} judge example-euler -q -o ${SCRATCH}/judgement
+  --examination invariants --examination galilean)
+expect("${output}" "\n. example-euler . holds . holds .\n")
 
 check_suites(${module})
 compile(${SCRATCH}/build-native -march=native)
