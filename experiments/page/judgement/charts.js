@@ -51,14 +51,25 @@ const tooltip = (chart) => [
   {field: 'interval_text', title: '95 % interval'},
 ];
 
-// `labels`: the names that own the colours; those of the chart's own series if left out.
-export function chart_spec(chart, labels = chart.series.map(({name}) => name)) {
+// `labels`: the names that own the colours. Without them the chart is one of many side by side, with its
+// own series.
+export function chart_spec(chart, labels = null) {
+  return labels
+    ? spec_of(chart, labels, {orient: 'right'})
+    : spec_of(
+        chart,
+        chart.series.map(({name}) => name),
+        {orient: 'bottom', columns: 1},
+      );
+}
+
+function spec_of(chart, labels, place) {
   const rows = rows_of(chart.series, chart);
   if (!rows.length) return null;
   const {x, y, floor} = encodings(chart, rows);
   const {colour, shape} = method_scales(labels);
   const drawn = labels.filter((label) => rows.some((row) => row.name === label));
-  const legend = {title: null, values: drawn, orient: 'right', symbolOpacity: 1};
+  const legend = {title: null, values: drawn, symbolOpacity: 1, ...place};
   const channel = (scale) => ({field: 'name', type: 'nominal', scale, legend});
   const stroke = channel(colour);
   const opacity = {condition: {param: 'picked', value: 1}, value: 0.1};

@@ -65,7 +65,7 @@ function draw_details(conclusion) {
     ...charts.map(({title}, index) =>
       element(
         'div',
-        {class: 'spaced'},
+        {},
         element('h3', {}, title),
         element('div', {class: 'chart', id: place(index)}),
       ),
