@@ -55,7 +55,6 @@ class Campaign {
   json run();
 
  private:
-  void prepare_directory() const;
   void prepare_scenes();
   void list_cells();
   Plan plan() const;
@@ -77,18 +76,6 @@ class Campaign {
   std::vector<std::unique_ptr<Cell>> cells_;
   std::atomic<std::size_t> finished_ = 0, planned_ = 0;  ///< cells whose methods apply
 };
-
-void Campaign::prepare_directory() const {
-  std::error_code error;
-  fs::create_directories(options_.directory / "cells", error);
-  if (error) {
-    throw InputError(fmt::format("{}: the output folder cannot be made ({})",
-                                 options_.directory.string(), error.message()));
-  }
-  const auto probe = options_.directory / "cells" / "probe";
-  write_atomically(probe, "");
-  fs::remove(probe, error);
-}
 
 void Campaign::prepare_scenes() {
   prepared_.resize(study_.scenes.size());
@@ -299,7 +286,7 @@ json Campaign::method_records() const {
 }
 
 json Campaign::run() {
-  prepare_directory();
+  make_output_folder(options_.directory, "cells");
   const InterruptNotice notice([this] { return interrupted(); });
   prepare_scenes();
   list_cells();

@@ -18,4 +18,16 @@ void write_atomically(const std::filesystem::path& path, const std::string& text
   if (!file || error) throw InputError(path.string() + ": cannot be written");
 }
 
+void make_output_folder(const std::filesystem::path& directory, const std::string& inner) {
+  std::error_code error;
+  std::filesystem::create_directories(directory / inner, error);
+  if (error) {
+    throw InputError(directory.string() + ": the output folder cannot be made (" + error.message() +
+                     ")");
+  }
+  const auto probe = directory / inner / "probe";
+  write_atomically(probe, "");
+  std::filesystem::remove(probe, error);
+}
+
 }  // namespace driftless

@@ -10,6 +10,7 @@
 #include "experiments/scene_keys.hpp"
 #include "experiments/study_warnings.hpp"
 #include "tests/json_schema.hpp"
+#include "tests/scene_reading.hpp"
 #include "tests/scratch_folder.hpp"
 
 // Isothermal scenes from the key to the report: what a bath leaves of a result, and what it is
@@ -18,18 +19,9 @@ namespace driftless {
 namespace {
 
 using nlohmann::json;
+using testing::read;
+using testing::refusal_of;
 using Folder = testing::ScratchFolder;
-
-Scene read(const json& overrides) { return read_scene(overrides, Location("scene.json", "scene")); }
-
-std::string refusal_of(const json& overrides) {
-  try {
-    read(overrides);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 // ---- Keys. -------------------------------------------------------------------------------------
 

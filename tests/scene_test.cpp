@@ -9,22 +9,14 @@
 #include "experiments/location.hpp"
 #include "experiments/scene_keys.hpp"
 #include "experiments/study.hpp"
+#include "tests/scene_reading.hpp"
 
 namespace driftless {
 namespace {
 
 using nlohmann::json;
-
-Scene read(const json& overrides) { return read_scene(overrides, Location("scene.json", "scene")); }
-
-std::string refusal_of(const json& overrides) {
-  try {
-    read(overrides);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
+using testing::read;
+using testing::refusal_of;
 
 TEST(Presets, have_the_published_parameters) {
   const Scene mackie = read({{"preset", "mackie-1999"}});

@@ -2,13 +2,14 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <mutex>
 
 #include "experiments/energy_drift.hpp"
 #include "experiments/judge/drift_prediction.hpp"
 #include "experiments/judge/examinations.hpp"
+#include "experiments/judge/isolated_runs.hpp"
 #include "experiments/order_fit.hpp"
 #include "experiments/replica.hpp"
+#include "experiments/scene_keys.hpp"
 
 /// The law of the energy drift (see drift_prediction.hpp) in a soft fluid without conduction.
 namespace driftless::judge {
@@ -65,10 +66,7 @@ Study study_of(const Conditions& conditions) {
 }
 
 Scene scene_of(const Setting& setting) {
-  Scene scene;
-  for (const auto& preset : presets()) {
-    if (preset.name == "soft-fluid") scene = preset.scene;
-  }
+  Scene scene = find_preset("soft-fluid")->scene;
   scene.fluid.heat_capacity = setting.heat_capacity;
   scene.fluid.friction = setting.friction;
   scene.fluid.conduction = 0;
@@ -76,25 +74,9 @@ Scene scene_of(const Setting& setting) {
   return scene;
 }
 
-/// Prepared once, as all methods start from the same states. The last replica starts off
-/// equilibrium and is not used.
-const PreparedScene& prepared(const Setting& setting, const Study& study) {
-  static std::mutex mutex;
-  static std::map<std::tuple<double, double, std::uint64_t>, PreparedScene> all;
-  const std::lock_guard lock(mutex);
-  const std::tuple key(setting.heat_capacity, setting.friction, study.seed);
-  auto found = all.find(key);
-  if (found == all.end()) {
-    found = all.emplace(std::piecewise_construct, std::tuple(key),
-                        std::tuple(scene_of(setting), study.seed, study.replicas + 1))
-                .first;
-  }
-  return found->second;
-}
-
 json run(const Candidate& candidate, const Conditions& conditions, const Setting& setting) {
   const Study study = study_of(conditions);
-  const auto& scene = prepared(setting, study);
+  const auto& scene = prepared_once(scene_of(setting), study.seed, study.replicas);
   std::vector<EnergyTrace> traces;
   json record = {{"failures", json::array()}};
   for (unsigned replica = 0; replica < study.replicas; ++replica) {

@@ -5,12 +5,12 @@
 #include <map>
 #include <mutex>
 
+#include "experiments/scene_keys.hpp"
+
 namespace driftless::judge {
 
 Scene small_fluid_scene(double phi_over_k, FrictionClosure closure, bool with_potential) {
-  const auto soft = std::find_if(presets().begin(), presets().end(),
-                                 [](const Preset& one) { return one.name == "soft-fluid"; });
-  Scene scene = soft->scene;
+  Scene scene = find_preset("soft-fluid")->scene;
   scene.particles = 150;
   scene.fluid.heat_capacity = phi_over_k * scene.fluid.boltzmann;
   scene.fluid.conduction = scene.fluid.heat_capacity;

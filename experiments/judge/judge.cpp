@@ -41,7 +41,6 @@ class Judgement {
   json run();
 
  private:
-  void prepare_directory() const;
   void list_jobs();
   void run_jobs();
   json method_record(const Candidate& candidate) const;
@@ -55,18 +54,6 @@ class Judgement {
   std::vector<Job> jobs_;
   std::atomic<std::size_t> finished_ = 0;
 };
-
-void Judgement::prepare_directory() const {
-  std::error_code error;
-  fs::create_directories(options_.directory / "parts", error);
-  if (error) {
-    throw InputError(fmt::format("{}: the output folder cannot be made ({})",
-                                 options_.directory.string(), error.message()));
-  }
-  const auto probe = options_.directory / "parts" / "probe";
-  write_atomically(probe, "");
-  fs::remove(probe, error);
-}
 
 void Judgement::list_jobs() {
   const auto& conditions = options_.conditions;
@@ -160,7 +147,7 @@ json Judgement::method_record(const Candidate& candidate) const {
 }
 
 json Judgement::run() {
-  prepare_directory();
+  make_output_folder(options_.directory, "parts");
   const InterruptNotice notice([this] { return interrupted(); });
   list_jobs();
   run_jobs();

@@ -84,6 +84,12 @@ async function draw_now(id, spec, description) {
   }
 }
 
-export function all_drawn() {
-  return Promise.all(turns.values());
+// Draws, and marks the page as ready once its charts stand, for whoever waits for it.
+let last = 0;
+export async function settle(draw_again) {
+  const mine = ++last;
+  document.body.dataset.state = 'drawing';
+  draw_again();
+  await Promise.all(turns.values());
+  if (mine === last) document.body.dataset.state = 'ready';
 }

@@ -1,6 +1,6 @@
 // The page: reads the result, keeps the choosers' state and draws every part from it.
 import {answer_of, is_isothermal, method_label, tolerances_of} from './answer.js';
-import {all_drawn} from './chart.js';
+import {settle} from './chart.js';
 import {fill_select, replace} from './dom.js';
 import {cost_unit, is_relative, number, observable_title, percent} from './format.js';
 import {method_labels, scene_cells, time_steps} from './rows.js';
@@ -124,16 +124,6 @@ function draw_all() {
   draw_drift(settled);
   draw_trace(settled);
   draw_laws(settled);
-}
-
-// Marks the page as ready once its charts stand, for whoever waits for it.
-let turn = 0;
-async function settle(draw_again) {
-  const mine = ++turn;
-  document.body.dataset.state = 'drawing';
-  draw_again();
-  await all_drawn();
-  if (mine === turn) document.body.dataset.state = 'ready';
 }
 
 function start() {

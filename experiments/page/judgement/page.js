@@ -1,5 +1,5 @@
 // The page of a judgement: verdicts of all methods, and behind each the findings.
-import {all_drawn, draw} from '../chart.js';
+import {draw, settle} from '../chart.js';
 import {element, fill_select, replace} from '../dom.js';
 import {chart_spec, overlaid, shared_series, trade_chart} from './charts.js';
 import {
@@ -117,16 +117,6 @@ function draw_trade() {
   const chart = trade_chart(trade, state.trade_scene, state.trade_observable);
   draw('chart-trade', chart && chart_spec(chart, [...labels, 'front']), `Error against cost, ${chart?.title}`);
   render_trade(trade, state.trade_scene, state.trade_observable);
-}
-
-// Marks the page as ready once its charts stand, for whoever waits for it.
-let turn = 0;
-async function settle(draw_again) {
-  const mine = ++turn;
-  document.body.dataset.state = 'drawing';
-  draw_again();
-  await all_drawn();
-  if (mine === turn) document.body.dataset.state = 'ready';
 }
 
 function start() {
