@@ -1,0 +1,14 @@
+#pragma once
+
+#include "experiments/reproduce/experiment.hpp"
+
+/// Every experiment, a line each: `name` is defined in a file of this folder.
+#define DRIFTLESS_EXPERIMENTS(EXPERIMENT)
+
+namespace driftless::reproduce {
+
+#define DRIFTLESS_DECLARE(name) extern const Experiment name;
+DRIFTLESS_EXPERIMENTS(DRIFTLESS_DECLARE)
+#undef DRIFTLESS_DECLARE
+
+}  // namespace driftless::reproduce
