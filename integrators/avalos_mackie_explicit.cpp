@@ -51,10 +51,8 @@ class AvalosMackieExplicit : public Integrator {
     const Fluid& fluid = system.fluid();
     system.accumulate([&](const auto& pair) { return noise_exchange(fluid, pair, dt); }, exchange_);
     trial_ = system.motion();
-    take_velocities(system, exchange_, trial_.velocity);
-    for (std::size_t i = 0; i < system.size(); ++i) {
-      trial_.internal_energy[i] += exchange_.energy[i];
-    }
+    take_momenta(system, exchange_, trial_);
+    take_energies(system, exchange_, trial_);
   }
 
   bool own_products_;

@@ -25,7 +25,7 @@ class AvalosMackieMidpoint : public Integrator {
         },
         [&](const auto& start, const auto& end, const auto& momentum) {
           auto total = end_point_conduction(fluid, start, end, dt);
-          const auto f = momentum - fluid.repulsive_force(start.r) * dt;
+          const auto f = momentum - fluid.repulsive_force(start) * dt;
           return total += midpoint_work(f, start, end);
         });
   }

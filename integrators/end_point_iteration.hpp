@@ -23,13 +23,14 @@ class EndPointRound {
     system.accumulate(
         trial_, [&](const auto& start, const auto& end) { return Transfer{momentum(start, end)}; },
         exchange_);
-    take_velocities(system, exchange_, trial_.velocity);
+    take_momenta(system, exchange_, trial_);
     system.accumulate(
         trial_,
         [&](const auto& start, const auto& end) {
           return energy(start, end, momentum(start, end));
         },
         exchange_);
+    take_surroundings_energy(system, exchange_, trial_);
   }
 
   /// Where the round started: the last u', and after it the p' that follow.
@@ -104,7 +105,7 @@ template <class V>
 V end_point_momentum(const Fluid& fluid, const Pair<V>& start, const Pair<V>& end, double dt) {
   using std::sqrt;
   V momentum(0);
-  if (fluid.has_repulsion()) momentum += fluid.repulsive_force(start.r) * dt;
+  if (fluid.has_repulsion()) momentum += fluid.repulsive_force(start) * dt;
   if (fluid.has_friction()) {
     momentum += sqrt(fluid.friction(end).noise_squared * dt) * start.noise -
                 fluid.friction(start).friction * start.v * dt;

@@ -31,8 +31,8 @@ class EnergyKeepingVerlet {
     system.accumulate(
         before_,
         [&](const auto& after_kick, const auto& before_kick) {
-          return midpoint_work(0.5 * dt * fluid.repulsive_force(after_kick.r), after_kick,
-                               before_kick);
+          return conservative_work(fluid, 0.5 * dt * fluid.repulsive_force(after_kick), after_kick,
+                                   before_kick);
         },
         work_);
     system.apply(work_);

@@ -17,7 +17,7 @@ Transfer<V> euler_friction(const Fluid& fluid, const Pair<V>& pair, double dt) {
   const V drag = (law.friction + law.induced) * pair.v * dt;
   const V kick = sqrt(law.noise_squared * dt) * pair.noise;
   const V heat =
-      0.5 * (pair.v * (drag - kick) - law.noise_squared * dt / (2 * fluid.reduced_mass()));
+      0.5 * (pair.v * (drag - kick) - law.noise_squared * dt / (2 * fluid.reduced_mass(pair)));
   return {kick - drag, heat, heat};
 }
 
@@ -39,6 +39,15 @@ Transfer<V> midpoint_work(const V& f, const Pair<V>& start, const TrialPair<V>& 
   return {V(0), -work, -work};
 }
 
+/// The same for a conservative impulse, whose work whoever has the potential energy pays.
+template <class V>
+Transfer<V> conservative_work(const Fluid& fluid, const V& f, const Pair<V>& start,
+                              const TrialPair<V>& end) {
+  const V work = 0.5 * f * (start.v + end.v);
+  const PairLaw& law = fluid.of(start);
+  return {V(0), -law.potential_share_i() * work, -law.potential_share_j() * work};
+}
+
 /// The transfer where a condition holds, otherwise none.
 template <class V, class Condition>
 Transfer<V> only_where(const Condition& condition, const Transfer<V>& transfer) {
@@ -50,7 +59,7 @@ Transfer<V> only_where(const Condition& condition, const Transfer<V>& transfer) 
 /// from both internal energies in equal parts: exact in momentum and energy for any dv.
 template <class V>
 Transfer<V> change_velocity(const Fluid& fluid, const Pair<V>& pair, const V& dv) {
-  const V momentum = fluid.reduced_mass() * dv;
+  const V momentum = fluid.reduced_mass(pair) * dv;
   const V heat = -0.25 * momentum * (2 * pair.v + dv);
   return {momentum, heat, heat};
 }
@@ -60,7 +69,7 @@ Transfer<V> change_velocity(const Fluid& fluid, const Pair<V>& pair, const V& dv
 template <class V>
 Transfer<V> euler_exchange(const Fluid& fluid, const Pair<V>& pair, double dt) {
   Transfer<V> total;
-  if (fluid.has_repulsion()) total.momentum += fluid.repulsive_force(pair.r) * dt;
+  if (fluid.has_repulsion()) total.momentum += fluid.repulsive_force(pair) * dt;
   if (fluid.has_friction()) total += euler_friction(fluid, pair, dt);
   if (fluid.has_conduction()) total += euler_conduction(fluid, pair, dt);
   return total;
@@ -74,20 +83,40 @@ inline void euler_maruyama_step(System& system, double dt, Exchange& exchange) {
   system.apply(exchange);
 }
 
-/// The velocities to which the momenta of an exchange lead; the system stays as it is.
-inline void take_velocities(const System& system, const Exchange& exchange,
-                            std::vector<Vector>& velocity) {
-  const double inverse_mass = 1 / system.fluid().mass();
-  const auto& start = system.motion().velocity;
+/// The motion to which the momenta of an exchange lead, energies as they are; the system stays as
+/// it is.
+inline void take_momenta(const System& system, const Exchange& exchange, Motion& trial) {
+  const Motion& start = system.motion();
   for (std::size_t i = 0; i < system.size(); ++i) {
-    velocity[i] = start[i] + exchange.momentum[i] * inverse_mass;
+    trial.velocity[i] = start.velocity[i] + exchange.momentum[i] * (1 / system.mass(i));
   }
+  for (std::size_t n = 0; n < surrounding_places; ++n) {
+    trial.surroundings[n].momentum =
+        start.surroundings[n].momentum + exchange.surroundings[n].momentum;
+  }
+}
+
+/// What the energies of an exchange make of the surroundings' in a motion.
+inline void take_surroundings_energy(const System& system, const Exchange& exchange,
+                                     Motion& trial) {
+  for (std::size_t n = 0; n < surrounding_places; ++n) {
+    trial.surroundings[n].energy =
+        system.motion().surroundings[n].energy + exchange.surroundings[n].energy;
+  }
+}
+
+/// The motion to which the energies of an exchange lead, velocities as they are.
+inline void take_energies(const System& system, const Exchange& exchange, Motion& trial) {
+  for (std::size_t i = 0; i < system.size(); ++i) {
+    trial.internal_energy[i] = system.motion().internal_energy[i] + exchange.energy[i];
+  }
+  take_surroundings_energy(system, exchange, trial);
 }
 
 /// The pair as it stands after an exchange, for the next flow of the same pair.
 template <class V>
 Pair<V> after(const Fluid& fluid, Pair<V> pair, const Transfer<V>& transfer) {
-  pair.v += transfer.momentum / fluid.reduced_mass();
+  pair.v += transfer.momentum / fluid.reduced_mass(pair);
   pair.u_i += transfer.energy_i;
   pair.u_j += transfer.energy_j;
   return pair;

@@ -43,13 +43,15 @@ class IsoenergeticVerlet : public Integrator {
   }
 
   void half_kick(System& system, double dt) const {
-    const double m = system.fluid().mass();
     const auto& force = system.conservative_force();
     system.update([&](std::size_t i, Vector& v, double& u) {
+      const double m = system.mass(i);
       const Vector before = v;
       v += (force[i] * dt + impulse_.momentum(i)) / (2 * m);
       u += impulse_.energy(i) / 2 - m * (v - before).dot(v + before) / 2;
     });
+    system.give_surroundings(impulse_.exchange(), 0.5);
+    system.give_surroundings(dt / 2);
   }
 
   KeptImpulse impulse_;

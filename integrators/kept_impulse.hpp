@@ -26,13 +26,8 @@ class KeptImpulse {
   const Vector& momentum(std::size_t i) const { return exchange_.momentum[i]; }
   double energy(std::size_t i) const { return exchange_.energy[i]; }
   /// Adds the given share of the impulse to velocities and internal energies. Throws StepFailure.
-  void apply(System& system, double share) const {
-    const double per_mass = share / system.fluid().mass();
-    system.update([&](std::size_t i, Vector& v, double& u) {
-      v += per_mass * exchange_.momentum[i];
-      u += share * exchange_.energy[i];
-    });
-  }
+  void apply(System& system, double share) const { system.apply(exchange_, share); }
+  const Exchange& exchange() const { return exchange_; }
 
   std::vector<double> save() const {
     std::vector<double> saved = {evaluated_for_};
@@ -40,16 +35,25 @@ class KeptImpulse {
       saved.insert(saved.end(), momentum.begin(), momentum.end());
     }
     saved.insert(saved.end(), exchange_.energy.begin(), exchange_.energy.end());
+    for (const auto& received : exchange_.surroundings) {
+      saved.insert(saved.end(), received.momentum.begin(), received.momentum.end());
+      saved.push_back(received.energy);
+    }
     return saved;
   }
   void load(const std::vector<double>& saved) {
     if (saved.empty()) return;  // saved before the first step
-    const std::size_t particles = (saved.size() - 1) / 4;
+    const std::size_t particles = (saved.size() - 1) / 4 - surrounding_places;
     evaluated_for_ = saved[0];
     exchange_.reset(particles);
     for (std::size_t i = 0; i < particles; ++i) {
       exchange_.momentum[i] = Vector(&saved[1 + 3 * i]);
       exchange_.energy[i] = saved[1 + 3 * particles + i];
+    }
+    const double* next = &saved[1 + 4 * particles];
+    for (auto& received : exchange_.surroundings) {
+      received = {Vector(next), next[3]};
+      next += 4;
     }
   }
 

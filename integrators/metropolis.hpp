@@ -47,7 +47,8 @@ struct PossibleGains {
 template <class V>
 V entropy_gain(const Fluid& fluid, const Pair<V>& pair, const PossibleGains<V>& gains) {
   using std::abs;
-  const V i = fluid.entropy_gain(pair.u_i, gains.i), j = fluid.entropy_gain(pair.u_j, gains.j);
+  const PairLaw& law = fluid.of(pair);
+  const V i = law.entropy_gain_i(pair, gains.i), j = law.entropy_gain_j(pair, gains.j);
   return i + j + 1e-14 * (abs(i) + abs(j));
 }
 
@@ -62,9 +63,9 @@ struct Proposal {
 ///   v' = alpha v + (k S)^{1/2} W,  S = (Theta/mu)(1 - alpha^2)
 template <class V>
 Proposal<V> friction_proposal(const Fluid& fluid, const Pair<V>& pair, double dt) {
-  const double mu = fluid.reduced_mass();
+  const double mu = fluid.reduced_mass(pair);
   const V x = fluid.friction(pair).friction * dt / mu;
-  const V mean = fluid.mean_temperature(pair.u_i, pair.u_j);
+  const V mean = fluid.mean_temperature(pair);
   return {-x * mean_decay(x) * pair.v, mean / mu * 2 * x * mean_decay(2 * x)};
 }
 
@@ -117,13 +118,14 @@ inline ConductionProposal conduction_proposal_choice(const Method& method, const
 template <class V>
 Proposal<V> conduction_proposal(const Fluid& fluid, const Pair<V>& pair, double dt,
                                 ConductionProposal kind) {
-  const V theta_i = fluid.temperature(pair.u_i), theta_j = fluid.temperature(pair.u_j);
+  const PairLaw& law = fluid.of(pair);
+  const V theta_i = law.temperature_i(pair), theta_j = law.temperature_j(pair);
   const V lambda = fluid.conductivity(pair);
   if (kind == ConductionProposal::euler) {
-    const auto law = fluid.conduction(pair);
-    return {(law.rate + law.induced) * dt, 2 * lambda * theta_i * theta_j * dt};
+    const auto heat = law.conduction(pair);
+    return {(heat.rate + heat.induced) * dt, 2 * lambda * theta_i * theta_j * dt};
   }
-  const V c = 1 / fluid.heat_capacity(pair.u_i) + 1 / fluid.heat_capacity(pair.u_j);
+  const V c = law.inverse_heat_capacities(pair);
   const V y = lambda * c * dt;
   return {lambda * dt * mean_decay(y) * (theta_j - theta_i),
           2 * lambda * dt * mean_decay(2 * y) * theta_i * theta_j};

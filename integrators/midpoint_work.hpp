@@ -19,7 +19,7 @@ class MidpointWork {
     };
     system.accumulate([&](const auto& pair) { return Transfer{momentum(pair)}; }, exchange_);
     trial_ = system.motion();
-    take_velocities(system, exchange_, trial_.velocity);
+    take_momenta(system, exchange_, trial_);
     system.accumulate(
         trial_,
         [&](const auto& start, const auto& end) {
@@ -28,9 +28,7 @@ class MidpointWork {
           return total;
         },
         exchange_);
-    for (std::size_t i = 0; i < system.size(); ++i) {
-      trial_.internal_energy[i] += exchange_.energy[i];
-    }
+    take_energies(system, exchange_, trial_);
     system.set_motion(trial_);
   }
 

@@ -15,7 +15,7 @@ namespace driftless {
 template <class V>
 Transfer<V> peters_friction(const Fluid& fluid, const Pair<V>& pair, double dt, bool exponential) {
   using std::sqrt;
-  const double mu = fluid.reduced_mass();
+  const double mu = fluid.reduced_mass(pair);
   const auto law = fluid.friction(pair);
   const V zeta = law.friction + law.induced;
   if (exponential) {
@@ -44,7 +44,7 @@ Transfer<V> lowe_andersen_friction(const Fluid& fluid, const Pair<V>& pair, doub
                                    Resampling resampling) {
   using std::max;
   using std::sqrt;
-  const double mu = fluid.reduced_mass(), k = fluid.boltzmann();
+  const double mu = fluid.reduced_mass(pair), k = fluid.boltzmann();
   Pair<V> rest = pair;
   const double share = fluid.isothermal() ? 0 : 0.25 * mu;  // a bath's energy is what it is
   rest.u_i += share * pair.v * pair.v;
@@ -52,7 +52,7 @@ Transfer<V> lowe_andersen_friction(const Fluid& fluid, const Pair<V>& pair, doub
   const V x = rate * fluid.friction(rest).friction * dt / mu;
   const V probability = x * mean_decay(x);
   const Pair<V>& bath = resampling == Resampling::exact ? rest : pair;
-  const V spread = fluid.mean_temperature(bath.u_i, bath.u_j) / mu;
+  const V spread = fluid.mean_temperature(bath) / mu;
   const V v = sqrt(k * spread) * pair.noise;
   const auto transfer = change_velocity(fluid, pair, v - pair.v);
   const auto jumps = pair.uniform < probability;

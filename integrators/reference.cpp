@@ -17,6 +17,11 @@ struct Equations {
   const Box& box;
   bool frozen;
   Eigen::Index particles;
+  const std::vector<std::uint8_t>& species;
+
+  std::size_t species_of(Eigen::Index i) const {
+    return species.empty() ? 0 : species[static_cast<std::size_t>(i)];
+  }
 
   void rates(const Unknowns& y, UnknownRates& dy) const {
     const Eigen::Index n = particles;
@@ -38,8 +43,10 @@ struct Equations {
     const auto velocity = y.segment(3 * particles, 3 * particles);
     const double v = (velocity.segment<3>(3 * i) - velocity.segment<3>(3 * j)).dot(e);
     const double u_i = y[6 * particles + i], u_j = y[6 * particles + j];
-    const Pair<double> pair{r, fluid.friction_weight(r), fluid.heat_weight(r), v, u_i, u_j, 0, 0};
-    double force = fluid.has_repulsion() ? fluid.repulsive_force(r) : 0;
+    const PairLaw& law = fluid.law(species_of(i), species_of(j));
+    const Pair<double> pair{
+        r, law.friction_weight(r), law.heat_weight(r), v, u_i, u_j, 0, 0, 1, 1, &law};
+    double force = law.repulsive_force(r);
     if (fluid.has_friction()) {
       const double drag = fluid.friction(pair).friction * v;
       force -= drag;
@@ -51,8 +58,8 @@ struct Equations {
       u_dot[i] += rate;
       u_dot[j] -= rate;
     }
-    v_dot.segment<3>(3 * i) += force / fluid.mass() * e;
-    v_dot.segment<3>(3 * j) -= force / fluid.mass() * e;
+    v_dot.segment<3>(3 * i) += force / fluid.mass(species_of(i)) * e;
+    v_dot.segment<3>(3 * j) -= force / fluid.mass(species_of(j)) * e;
   }
 };
 
@@ -62,6 +69,9 @@ void require_solvable(const Fluid& fluid, const Box& box, double duration) {
   }
   if (!(duration >= 0) || !std::isfinite(duration)) {
     throw std::invalid_argument("the duration of a reference solution is at least 0");
+  }
+  if (box.is_bounded()) {
+    throw std::invalid_argument("the reference solution is of a periodic box");
   }
   if (box.lengths.minCoeff() < 2 * fluid.range()) {
     throw std::invalid_argument("the box is shorter than twice the range of the interaction");
@@ -83,7 +93,7 @@ State reference_solution(const Fluid& fluid, const Box& box, const State& start,
     y.segment<3>(3 * (n + i)) = start.velocity[place];
     y[6 * n + i] = start.internal_energy[place];
   }
-  const Equations equations{fluid, box, frozen, n};
+  const Equations equations{fluid, box, frozen, n, start.species};
   const auto rates = [&](const Unknowns& at, UnknownRates& dy) { equations.rates(at, dy); };
   y = solve_ode(rates, y, duration, solver, tolerance);
   State end = start;

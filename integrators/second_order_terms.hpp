@@ -39,7 +39,7 @@ NoiseChanges<V> changes(const Pair<V>& start, const TrialPair<V>& end) {
 template <class V>
 NoiseChanges<V> own_changes(const Fluid& fluid, const Pair<V>& pair, double dt) {
   const auto exchange = noise_exchange(fluid, pair, dt);
-  return {exchange.momentum / fluid.reduced_mass(), exchange.energy_i, exchange.energy_j};
+  return {exchange.momentum / fluid.reduced_mass(pair), exchange.energy_i, exchange.energy_j};
 }
 
 /// A pair's exchange over dt to O(dt), the changes by noise inserted into Gamma, Lambda and the
@@ -52,7 +52,7 @@ Transfer<V> expanded_exchange(const Fluid& fluid, const Pair<V>& pair,
     return 1 + slopes.by_u_i * change.u_i + slopes.by_u_j * change.u_j;
   };
   Transfer<V> total;
-  if (fluid.has_repulsion()) total.momentum += fluid.repulsive_force(pair.r) * dt;
+  if (fluid.has_repulsion()) total.momentum += fluid.repulsive_force(pair) * dt;
   if (fluid.has_friction()) {
     const auto law = fluid.friction(pair);
     const V drag = law.friction * pair.v * dt;

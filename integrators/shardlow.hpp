@@ -47,7 +47,7 @@ template <class V>
 Transfer<V> shardlow_friction(const Fluid& fluid, const Pair<V>& pair, double dt,
                               const ShardlowChoices& choices) {
   using std::sqrt;
-  const double mu = fluid.reduced_mass();
+  const double mu = fluid.reduced_mass(pair);
   const auto law = fluid.friction(pair);
   const V zeta = choices.as_published ? law.friction : law.friction + law.induced;
   if (choices.exponential) {

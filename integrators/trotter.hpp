@@ -13,8 +13,8 @@ namespace driftless {
 /// the midpoint velocity, u_i -= (f - F^C dt)(v + v')/4, u_j likewise.
 template <class V>
 Transfer<V> trotter_friction(const Fluid& fluid, const Pair<V>& pair, double dt) {
-  const double mu = fluid.reduced_mass();
-  const V force = fluid.has_repulsion() ? fluid.repulsive_force(pair.r) : V(0);
+  const double mu = fluid.reduced_mass(pair);
+  const V force = fluid.has_repulsion() ? fluid.repulsive_force(pair) : V(0);
   if (!fluid.has_friction()) return Transfer{force * dt};
   const auto law = fluid.friction(pair);
   const V zeta = law.friction + law.induced;

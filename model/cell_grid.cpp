@@ -11,8 +11,11 @@
 namespace driftless {
 
 CellGrid::CellGrid(const Box& box, double range, std::size_t particles)
-    : box_(box), particles_(particles) {
-  if (box.lengths.minCoeff() < 2 * range) {
+    : box_(box), lengths_(box.lengths), particles_(particles) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.is_walled(axis)) lengths_[axis] += range;
+  }
+  if (lengths_.minCoeff() < 2 * range) {
     std::ostringstream message;
     message << "the box's shortest side " << box.lengths.minCoeff()
             << " is below twice the range of the interaction " << range;
@@ -21,7 +24,7 @@ CellGrid::CellGrid(const Box& box, double range, std::size_t particles)
   // No more than a few cells per particle, however dilute the system.
   const double most = std::max(3.0, 2 * std::cbrt(static_cast<double>(particles)));
   for (int axis = 0; axis < 3; ++axis) {
-    const double fit = range > 0 ? box.lengths[axis] / range : 1.0;
+    const double fit = range > 0 ? lengths_[axis] / range : 1.0;
     count_[axis] = static_cast<int>(std::min(fit, most));
   }
   // Below three cells a neighbour would be met twice; below four no two groups of cells are apart.
@@ -37,6 +40,7 @@ void CellGrid::sort(const State& state, const Threads& threads) {
   entry_.resize(state.size());
   place_.resize(state.size());
   id_.resize(state.size());
+  species_.resize(state.species.size());
   position_.resize(padded);
   for (auto& values : rough_) values.resize(padded);
 
@@ -77,7 +81,7 @@ void CellGrid::sort(const State& state, const Threads& threads) {
 }
 
 void CellGrid::assign(const State& state, std::size_t begin, std::size_t end) {
-  const Eigen::Array3d scale = count_.cast<double>().array() / box_.lengths.array();
+  const Eigen::Array3d scale = count_.cast<double>().array() / lengths_.array();
   for (std::size_t i = begin; i < end; ++i) {
     const Eigen::Array3i cell = (state.position[i].array() * scale).cast<int>();
     // Rounding may lead out of the last cell.
@@ -91,6 +95,7 @@ void CellGrid::gather(const State& state, std::size_t begin, std::size_t end) {
     const auto place = static_cast<std::uint32_t>(entry_[n]);
     place_[n] = place;
     id_[n] = static_cast<std::uint32_t>(entry_[n] >> 32);
+    if (!species_.empty()) species_[n] = state.species[place];
     const Vector& position = state.position[place];
     position_[n] = {position[0], position[1], position[2], 0};
     for (std::size_t axis = 0; axis < 3; ++axis) {

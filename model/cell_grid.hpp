@@ -31,6 +31,8 @@ class CellGrid {
   bool single() const { return single_; }
   const Eigen::Vector3i& count() const { return count_; }
   const Box& box() const { return box_; }
+  /// The box's sides, longer by the range where walls stand: images are then never near.
+  const Vector& lengths() const { return lengths_; }
   /// Particles of cell c are begin(c) to begin(c + 1), x fastest.
   std::uint32_t begin(std::size_t cell) const { return begin_[cell]; }
   std::size_t index(int x, int y, int z) const {
@@ -47,15 +49,17 @@ class CellGrid {
   /// The particles in the order of cells; single precision carries `margin` more than the range.
   const std::vector<std::uint32_t>& place() const { return place_; }  ///< in the state's storage
   const std::vector<std::uint32_t>& id() const { return id_; }
+  std::uint8_t species(std::size_t n) const { return species_.empty() ? 0 : species_[n]; }
   const std::vector<Quadruple>& position() const { return position_; }
   const std::array<std::vector<float>, 3>& rough_position() const { return rough_; }
-  double rough_margin() const { return 4e-7 * box_.lengths.maxCoeff(); }
+  double rough_margin() const { return 4e-7 * lengths_.maxCoeff(); }
 
  private:
   void assign(const State& state, std::size_t begin, std::size_t end);
   void gather(const State& state, std::size_t begin, std::size_t end);
 
   Box box_;
+  Vector lengths_;
   std::size_t particles_;
   bool single_ = false;
   Eigen::Vector3i count_;
@@ -63,6 +67,7 @@ class CellGrid {
   std::vector<std::uint32_t> cell_;   ///< of each place in storage
   std::vector<std::uint64_t> entry_;  ///< id and place in storage, sorted
   std::vector<std::uint32_t> place_, id_;
+  std::vector<std::uint8_t> species_;  ///< empty: all 0
   std::vector<Quadruple> position_;
   std::array<std::vector<float>, 3> rough_;
 };

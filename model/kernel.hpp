@@ -12,6 +12,7 @@ namespace driftless {
 /// What kernels see of many pairs and what they answer, quantity by quantity. The arrays of one
 /// object are parts of one piece of memory, each padded to whole lanes of any processor.
 struct PairArrays {
+  const PairLaw* law;  ///< of all these pairs
   double *r, *w_friction, *w_heat, *v, *u_i, *u_j, *noise, *heat_noise, *uniform, *heat_uniform;
   double *trial_v, *trial_u_i, *trial_u_j, *trial_dv_i, *trial_dv_j;
   double *momentum, *energy_i, *energy_j;  ///< the answer
@@ -20,10 +21,17 @@ struct PairArrays {
   /// The pair, or the lanes of pairs, from place n on.
   template <class V>
   Pair<V> pair(std::size_t n) const {
-    return {load<V>(r + n),           load<V>(w_friction + n), load<V>(w_heat + n),
-            load<V>(v + n),           load<V>(u_i + n),        load<V>(u_j + n),
-            load<V>(noise + n),       load<V>(heat_noise + n), load<V>(uniform + n),
-            load<V>(heat_uniform + n)};
+    return {load<V>(r + n),
+            load<V>(w_friction + n),
+            load<V>(w_heat + n),
+            load<V>(v + n),
+            load<V>(u_i + n),
+            load<V>(u_j + n),
+            load<V>(noise + n),
+            load<V>(heat_noise + n),
+            load<V>(uniform + n),
+            load<V>(heat_uniform + n),
+            law};
   }
   template <class V>
   TrialPair<V> trial_pair(std::size_t n) const {

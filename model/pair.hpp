@@ -7,6 +7,8 @@
 
 namespace driftless {
 
+class PairLaw;
+
 /// What a pair (i, j), id_i < id_j, sees of itself; vectors are projected on e = (r_i - r_j)/r.
 /// V is double or a vector of lanes: kernels are pure functions, generic in V.
 template <class V>
@@ -21,6 +23,7 @@ struct Pair {
   /// Uniform variates in (0, 1), independent of all else, for who decides by chance; drawn only
   /// where a sweep asks for them, 1 elsewhere.
   V uniform{1.0}, heat_uniform{1.0};
+  const PairLaw* law = nullptr;  ///< of the pair's kind; null: the first species' (Fluid::of)
 };
 
 /// A pair's state at the end of an implicit step, beside the `Pair` at its start.

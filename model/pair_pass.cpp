@@ -63,8 +63,9 @@ PassSeconds& PassSeconds::operator+=(const PassSeconds& other) {
 
 void PairPass::reserve(std::size_t pairs) {
   if (pairs <= capacity_) return;
-  constexpr std::size_t columns = sizeof(PairArrays) / sizeof(double*);
-  static_assert(sizeof(PairArrays) == columns * sizeof(double*));
+  // All members but the law.
+  constexpr std::size_t columns = sizeof(PairArrays) / sizeof(double*) - 1;
+  static_assert(sizeof(PairArrays) == (columns + 1) * sizeof(double*));
   capacity_ = (pairs + pairs / 8 + 15) / 8 * 8;
   const std::size_t stride = capacity_ + 2 * 8;  // lanes of any processor, and no two columns alike
   memory_.assign(columns * stride, 0.0);
@@ -97,16 +98,17 @@ void PairPass::take(const Fluid& fluid, const CellGrid& cells, const PairIndices
   count_ = count;
 }
 
-void PairPass::geometry() {
+void PairPass::geometry(std::size_t from, std::size_t to) {
   const PassClock clock(part(&PassSeconds::arithmetic));
   const Quadruple* const position = cells_->position().data();
-  const Vector& length = cells_->box().lengths;
+  const Vector& length = cells_->lengths();
+  const PairLaw& law = *arrays_.law;
   const bool friction = fluid_->has_friction(), heat = fluid_->has_conduction();
   const auto nearest_image = [](Lanes difference, double side) {
     const Lanes images = hn::Round((difference / side).raw());
     return difference - images * side;
   };
-  for (std::size_t n = 0; n < count_; n += Lanes::count()) {
+  for (std::size_t n = from; n < to; n += Lanes::count()) {
     const auto i = fetch(position, i_ + n), j = fetch(position, j_ + n);
     const Lanes x = nearest_image(i.x - j.x, length[0]), y = nearest_image(i.y - j.y, length[1]),
                 z = nearest_image(i.z - j.z, length[2]);
@@ -117,8 +119,29 @@ void PairPass::geometry() {
     (y * inverse).store(arrays_.e_y + n);
     (z * inverse).store(arrays_.e_z + n);
     r.store(arrays_.r + n);
-    if (friction) select(apart, fluid_->friction_weight(r), 0.0).store(arrays_.w_friction + n);
-    if (heat) select(apart, fluid_->heat_weight(r), 0.0).store(arrays_.w_heat + n);
+    if (friction) select(apart, law.friction_weight(r), 0.0).store(arrays_.w_friction + n);
+    if (heat) select(apart, law.heat_weight(r), 0.0).store(arrays_.w_heat + n);
+  }
+}
+
+void PairPass::contact_geometry(std::size_t boundary) {
+  const PassClock clock(part(&PassSeconds::arithmetic));
+  const bool field = boundary == field_place, upper = boundary % 2 == 1;
+  const PairLaw& law = *arrays_.law;
+  Eigen::Index axis = static_cast<Eigen::Index>(boundary / 2);
+  if (field) cells_->box().gravity.cwiseAbs().maxCoeff(&axis);
+  double* const e[] = {arrays_.e_x, arrays_.e_y, arrays_.e_z};
+  for (Eigen::Index n = 0; n < 3; ++n) {
+    std::fill_n(e[n], padded(count_), n != axis ? 0.0 : !field && upper ? -1.0 : 1.0);
+  }
+  const double length = cells_->box().lengths[axis];
+  for (std::size_t n = 0; n < padded(count_); n += Lanes::count()) {
+    const auto at = fetch(cells_->position().data(), i_ + n);
+    const Lanes x = axis == 0 ? at.x : axis == 1 ? at.y : at.z;
+    const Lanes r = !field && upper ? length - x : x;
+    r.store(arrays_.r + n);
+    (field ? Lanes(0.0) : law.friction_weight(r)).store(arrays_.w_friction + n);
+    (field ? Lanes(0.0) : law.heat_weight(r)).store(arrays_.w_heat + n);
   }
 }
 
@@ -126,6 +149,18 @@ void PairPass::look_up_ids() {
   const auto& id = cells_->id();
   for (std::size_t n = 0; n < padded(count_); ++n) id_i_[n] = id[i_[n]];
   for (std::size_t n = 0; n < padded(count_); ++n) id_j_[n] = id[j_[n]];
+}
+
+void PairPass::look_up_contact_ids(std::uint32_t boundary_id) {
+  const auto& id = cells_->id();
+  for (std::size_t n = 0; n < padded(count_); ++n) id_i_[n] = id[i_[n]];
+  std::fill_n(id_j_.begin(), padded(count_), boundary_id);
+}
+
+void PairPass::draw_normals_of_ids(const Noise& noise, Stage stage) {
+  noise.pair_normals(count_, id_i_.data(), id_j_.data(), stage,
+                     fluid_->has_friction() ? arrays_.noise : nullptr,
+                     fluid_->has_conduction() ? arrays_.heat_noise : nullptr);
 }
 
 void PairPass::draw_normals(const Noise& noise, Stage stage) {
@@ -136,17 +171,36 @@ void PairPass::draw_normals(const Noise& noise, Stage stage) {
     return;
   }
   look_up_ids();
-  noise.pair_normals(count_, id_i_.data(), id_j_.data(), stage,
-                     fluid_->has_friction() ? arrays_.noise : nullptr,
-                     fluid_->has_conduction() ? arrays_.heat_noise : nullptr);
+  draw_normals_of_ids(noise, stage);
+}
+
+void PairPass::draw_contact_normals(const Noise& noise, Stage stage, std::uint32_t boundary_id) {
+  const PassClock clock(part(&PassSeconds::noise));
+  if (!fluid_->fluctuates() || arrays_.law->range() == 0) {
+    std::fill_n(arrays_.noise, padded(count_), 0.0);
+    std::fill_n(arrays_.heat_noise, padded(count_), 0.0);
+    return;
+  }
+  look_up_contact_ids(boundary_id);
+  draw_normals_of_ids(noise, stage);
+}
+
+void PairPass::draw_uniforms_of_ids(const Noise& noise, Stage stage) {
+  noise.pair_uniforms(count_, id_i_.data(), id_j_.data(), stage, arrays_.uniform,
+                      arrays_.heat_uniform);
+  has_uniforms_ = true;
 }
 
 void PairPass::draw_uniforms(const Noise& noise, Stage stage) {
   const PassClock clock(part(&PassSeconds::noise));
   look_up_ids();
-  noise.pair_uniforms(count_, id_i_.data(), id_j_.data(), stage, arrays_.uniform,
-                      arrays_.heat_uniform);
-  has_uniforms_ = true;
+  draw_uniforms_of_ids(noise, stage);
+}
+
+void PairPass::draw_contact_uniforms(const Noise& noise, Stage stage, std::uint32_t boundary_id) {
+  const PassClock clock(part(&PassSeconds::noise));
+  look_up_contact_ids(boundary_id);
+  draw_uniforms_of_ids(noise, stage);
 }
 
 void PairPass::draw_no_uniforms() {
@@ -221,20 +275,21 @@ void PairPass::add(Quadruple* sums) {
 
 bool PairPass::apply(const PassParticles& particles, std::size_t from, std::size_t to) {
   const PassClock clock(part(&PassSeconds::scatter));
-  const double inverse_mass = 1 / fluid_->mass();
+  const double inverse_mass_i = arrays_.law->inverse_mass_i(),
+               inverse_mass_j = arrays_.law->inverse_mass_j();
   Quadruple* const result = particles.result;
   const bool isothermal = fluid_->isothermal();
   bool positive = true;
   for (std::size_t n = from; n < to; n += Lanes::count()) {
-    const Lanes change = Lanes::load(arrays_.momentum + n) * inverse_mass;
-    const Lanes x = change * Lanes::load(arrays_.e_x + n),
-                y = change * Lanes::load(arrays_.e_y + n),
-                z = change * Lanes::load(arrays_.e_z + n);
+    const Lanes momentum = Lanes::load(arrays_.momentum + n);
+    const Lanes e_x = Lanes::load(arrays_.e_x + n), e_y = Lanes::load(arrays_.e_y + n),
+                e_z = Lanes::load(arrays_.e_z + n);
+    const Lanes by_i = momentum * inverse_mass_i, by_j = momentum * inverse_mass_j;
     const auto i = fetch(result, i_ + n), j = fetch(result, j_ + n);
     const Lanes u_i = isothermal ? i.energy : i.energy + Lanes::load(arrays_.energy_i + n);
     const Lanes u_j = isothermal ? j.energy : j.energy + Lanes::load(arrays_.energy_j + n);
-    turn({i.x + x, i.y + y, i.z + z, u_i}, &to_i_[0]);
-    turn({j.x - x, j.y - y, j.z - z, u_j}, &to_j_[0]);
+    turn({i.x + by_i * e_x, i.y + by_i * e_y, i.z + by_i * e_z, u_i}, &to_i_[0]);
+    turn({j.x - by_j * e_x, j.y - by_j * e_y, j.z - by_j * e_z, u_j}, &to_j_[0]);
     const std::size_t count = std::min(Lanes::count(), to - n);
     for (std::size_t lane = 0; lane < count; ++lane) {
       result[i_[n + lane]] = to_i_[lane];
@@ -244,6 +299,24 @@ bool PairPass::apply(const PassParticles& particles, std::size_t from, std::size
     const auto counted = hn::FirstN(Doubles(), count);
     const auto spent = (u_i <= 0.0 || u_j <= 0.0).raw();
     positive = positive && hn::AllFalse(Doubles(), hn::And(counted, spent));
+  }
+  return positive;
+}
+
+bool PairPass::apply_contacts(const PassParticles& particles, std::size_t from, std::size_t to) {
+  const PassClock clock(part(&PassSeconds::scatter));
+  const double inverse_mass = arrays_.law->inverse_mass_i();
+  const bool isothermal = fluid_->isothermal();
+  bool positive = true;
+  for (std::size_t n = from; n < to; ++n) {
+    const double f = arrays_.momentum[n];
+    const Vector momentum(f * arrays_.e_x[n], f * arrays_.e_y[n], f * arrays_.e_z[n]);
+    Quadruple& i = particles.result[i_[n]];
+    i += {inverse_mass * momentum[0], inverse_mass * momentum[1], inverse_mass * momentum[2],
+          isothermal ? 0 : arrays_.energy_i[n]};
+    particles.received[j_[n] - cells_->particles()] +=
+        {-momentum[0], -momentum[1], -momentum[2], isothermal ? 0 : arrays_.energy_j[n]};
+    positive = positive && (isothermal || i.energy > 0);
   }
   return positive;
 }

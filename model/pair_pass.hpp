@@ -18,6 +18,7 @@ struct PassParticles {
   const Quadruple* trial = nullptr;   ///< at the trial end of the step
   const Quadruple* energy = nullptr;  ///< whose energies the pairs see, if others than those
   Quadruple* result = nullptr;        ///< sums of what is exchanged, or the motion itself
+  Quadruple* received = nullptr;      ///< what walls receive, by their numbers
 };
 
 /// Seconds that went into each part of the passes over pairs, where they are measured.
@@ -62,11 +63,18 @@ class PairPass {
   /// What the passes below speak of: these pairs of this fluid from `first` on.
   void take(const Fluid& fluid, const CellGrid& cells, const PairIndices& pairs, std::size_t first,
             std::size_t count);
+  /// The laws of those that the next passes treat.
+  void set_law(const PairLaw& law) { arrays_.law = &law; }
 
-  void geometry();
+  void geometry(std::size_t from, std::size_t to);
+  /// The geometry of contacts with a boundary, all that have been taken.
+  void contact_geometry(std::size_t boundary);
   void draw_normals(const Noise& noise, Stage stage);
   void draw_uniforms(const Noise& noise, Stage stage);
   void draw_no_uniforms();
+  /// The noise of contacts with a boundary.
+  void draw_contact_normals(const Noise& noise, Stage stage, std::uint32_t boundary_id);
+  void draw_contact_uniforms(const Noise& noise, Stage stage, std::uint32_t boundary_id);
   /// Normals from and to memory that holds those of friction and `apart` further those of heat.
   void recall_normals(const double* kept, std::size_t apart);
   void keep_normals(double* kept, std::size_t apart) const;
@@ -81,6 +89,8 @@ class PairPass {
   /// Changes velocities and energies by what pairs exchange, no particle twice among them; false if
   /// an energy is then not above zero. In an isothermal fluid energies stay as they are.
   bool apply(const PassParticles& particles, std::size_t from, std::size_t to);
+  /// The same of contacts with a boundary.
+  bool apply_contacts(const PassParticles& particles, std::size_t from, std::size_t to);
 
   const PairArrays& arrays() const { return arrays_; }
 
@@ -92,6 +102,9 @@ class PairPass {
  private:
   void reserve(std::size_t pairs);
   void look_up_ids();
+  void look_up_contact_ids(std::uint32_t boundary_id);
+  void draw_normals_of_ids(const Noise& noise, Stage stage);
+  void draw_uniforms_of_ids(const Noise& noise, Stage stage);
 
   const Fluid* fluid_ = nullptr;
   const CellGrid* cells_ = nullptr;

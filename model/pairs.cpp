@@ -43,7 +43,7 @@ class Neighbours {
   /// The cells from `from` to x + 1 of a row, which may lie beyond the edges.
   void add_row(int from, int y, int z) {
     const auto& count = cells_.count();
-    const Vector& length = cells_.box().lengths;
+    const Vector& length = cells_.lengths();
     const int last = count[0] - 1;
     float shift_y = 0, shift_z = 0;
     if (y < 0) y += count[1], shift_y = -static_cast<float>(length[1]);
@@ -111,7 +111,7 @@ HWY_INLINE void add_near(Writer& found, const CellGrid& cells, std::uint32_t i,
   for (std::size_t axis = 0; axis < 3; ++axis) {
     auto difference = hn::Sub(candidates.position[axis], hn::Set(floats, point[axis]));
     if constexpr (wrap) {
-      const auto length = static_cast<float>(cells.box().lengths[static_cast<Eigen::Index>(axis)]);
+      const auto length = static_cast<float>(cells.lengths()[static_cast<Eigen::Index>(axis)]);
       const auto images = hn::Round(hn::Mul(difference, hn::Set(floats, 1 / length)));
       difference = hn::NegMulAdd(images, hn::Set(floats, length), difference);
     }
@@ -188,14 +188,18 @@ void order_by_ids(PairIndices& found, const std::vector<std::uint32_t>& ids) {
   }
 }
 
-/// Whole lanes may be read: what is beyond the last pair is then a particle with itself.
+/// What is beyond the last pair is a particle with itself.
 void pad(PairIndices& pairs) {
-  pairs.reserve(0);
-  const auto end = static_cast<std::ptrdiff_t>(pairs.size);
   // One of this block: another may be at work on any other particle.
   const std::uint32_t own = pairs.size > 0 ? pairs.i[pairs.size - 1] : 0;
-  std::fill_n(pairs.i.begin() + end, 2 * Lanes::count(), own);
-  std::fill_n(pairs.j.begin() + end, 2 * Lanes::count(), own);
+  pairs.pad(own, own);
+}
+
+/// The number of a pair's kind among those of so many species.
+std::uint32_t kind_of(const PairIndices& pairs, std::size_t n, const CellGrid& cells,
+                      std::size_t species) {
+  return static_cast<std::uint32_t>(cells.species(pairs.i[n]) * species +
+                                    cells.species(pairs.j[n]));
 }
 
 /// Pairs that belong to groups, put side by side.
@@ -264,8 +268,21 @@ void PairIndices::reserve(std::size_t more) {
   j.resize(i.size());
 }
 
-PairBlocks::PairBlocks(const CellGrid& cells, double range, unsigned threads)
-    : range_(range), single_(cells.single()) {
+void PairIndices::append(std::uint32_t of_i, std::uint32_t of_j) {
+  if (size >= j.size()) reserve(size + 1);
+  i[size] = of_i;
+  j[size++] = of_j;
+}
+
+void PairIndices::pad(std::uint32_t of_i, std::uint32_t of_j) {
+  reserve(0);
+  const auto end = static_cast<std::ptrdiff_t>(size);
+  std::fill_n(i.begin() + end, 2 * Lanes::count(), of_i);
+  std::fill_n(j.begin() + end, 2 * Lanes::count(), of_j);
+}
+
+PairBlocks::PairBlocks(const CellGrid& cells, double range, unsigned threads, std::size_t species)
+    : range_(range), species_(species), single_(cells.single()) {
   const Eigen::Vector3i count = cells.count();
   // Few particles fit into the cache as they are, and columns have half as many colours, each a
   // phase to wait for; many are taken tile by tile, a tile's particles staying in the cache.
@@ -330,9 +347,25 @@ void PairBlocks::find(const CellGrid& cells, const Threads& threads) {
     }
     pad(block.found);
     if (!cells.single()) order_by_ids(block.found, cells.id());
+    sort_by_kind(block, cells);
   });
   used_.resize(cells.particles());
   sorted_by_ids_ = false;
+}
+
+void PairBlocks::sort_by_kind(PairBlock& block, const CellGrid& cells) const {
+  const auto kinds = static_cast<std::uint32_t>(species_ * species_);
+  if (kinds == 1) {
+    block.kind_end.assign(1, static_cast<std::uint32_t>(block.found.size));
+    return;
+  }
+  thread_local std::vector<std::uint32_t> kind;
+  kind.resize(block.found.size);
+  for (std::size_t n = 0; n < kind.size(); ++n) kind[n] = kind_of(block.found, n, cells, species_);
+  thread_local PairGroups sorted;
+  sort_by_group(block.found, kind, kinds, sorted);
+  std::swap(block.found, sorted.pairs);
+  block.kind_end = sorted.end;
 }
 
 std::size_t PairBlocks::pairs() const {
@@ -341,12 +374,23 @@ std::size_t PairBlocks::pairs() const {
   return sum;
 }
 
-void PairBlocks::group(PairBlock& block) {
+void PairBlocks::split_by_kind(const PairIndices& pairs, const CellGrid& cells,
+                               std::vector<std::uint32_t>& group, std::uint32_t& groups) const {
+  const auto kinds = static_cast<std::uint32_t>(species_ * species_);
+  if (kinds == 1) return;
+  for (std::size_t n = 0; n < pairs.size; ++n) {
+    group[n] = group[n] * kinds + kind_of(pairs, n, cells, species_);
+  }
+  groups *= kinds;
+}
+
+void PairBlocks::group(PairBlock& block, const CellGrid& cells) {
   if (block.grouped) return;
   block.grouped = true;
   thread_local std::vector<std::uint32_t> group;
-  const auto groups = single_ ? groups_in_order(block.found, used_, group)
-                              : groups_of_few(block.found, used_, group);
+  auto groups = single_ ? groups_in_order(block.found, used_, group)
+                        : groups_of_few(block.found, used_, group);
+  split_by_kind(block.found, cells, group, groups);
   sort_by_group(block.found, group, groups, block.groups);
 }
 
@@ -373,7 +417,8 @@ const PairGroups& PairBlocks::by_ids(const CellGrid& cells) {
     sorted.j[sorted.size++] = pair.j;
   }
   std::vector<std::uint32_t> group;
-  const auto groups = groups_in_order(sorted, used_, group);
+  auto groups = groups_in_order(sorted, used_, group);
+  split_by_kind(sorted, cells, group, groups);
   sort_by_group(sorted, group, groups, by_ids_);
   return by_ids_;
 }

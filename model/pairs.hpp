@@ -18,10 +18,13 @@ struct PairIndices {
 
   /// Makes room for `more` pairs beyond the present ones.
   void reserve(std::size_t more);
+  void append(std::uint32_t of_i, std::uint32_t of_j);
+  /// Fills what is readable beyond the last pair.
+  void pad(std::uint32_t of_i, std::uint32_t of_j);
 };
 
 /// Pairs in groups that may be treated at once, as no particle is twice in a group; a group stands
-/// for a place in the order of a sweep.
+/// for a place in the order of a sweep. The kind of group g is g modulo the number of kinds.
 struct PairGroups {
   PairIndices pairs;
   std::vector<std::uint32_t> end;  ///< of each group
@@ -33,7 +36,9 @@ struct PairBlock {
     Eigen::Vector3i from, to;  ///< cells [from, to)
   };
   std::vector<Tile> tiles;
-  PairIndices found;
+  PairIndices found;  ///< kind after kind
+  std::vector<std::uint32_t>
+      kind_end;  ///< of each kind of pair: kind = i's species * species + j's
   PairGroups groups;
   bool grouped = false;
   /// The normals of friction and then those of heat, where they are kept, and of which step and
@@ -49,7 +54,7 @@ struct PairBlock {
 /// block, its pairs in the order of ids.
 class PairBlocks {
  public:
-  PairBlocks(const CellGrid& cells, double range, unsigned threads);
+  PairBlocks(const CellGrid& cells, double range, unsigned threads, std::size_t species = 1);
 
   /// Finds the pairs anew. Single precision decides: a pair beyond the range by up to the cells'
   /// margin may be among them.
@@ -63,7 +68,7 @@ class PairBlocks {
 
   /// Puts a block's pairs into groups, once: each pair into the first group that has neither of its
   /// particles; in a single cell so that the order is that of ids. Blocks of one colour at once.
-  void group(PairBlock& block);
+  void group(PairBlock& block, const CellGrid& cells);
   /// All pairs one after the other in the order of ids (i, then j): a group is of pairs that do not
   /// see each other's results.
   const PairGroups& by_ids(const CellGrid& cells);
@@ -71,7 +76,13 @@ class PairBlocks {
  private:
   void add_blocks(const std::vector<PairBlock::Tile>& tiles, std::size_t per_block);
 
+  void sort_by_kind(PairBlock& block, const CellGrid& cells) const;
+  /// Makes of each group one for each kind.
+  void split_by_kind(const PairIndices& pairs, const CellGrid& cells,
+                     std::vector<std::uint32_t>& group, std::uint32_t& groups) const;
+
   double range_;
+  std::size_t species_;
   bool single_;
   std::vector<PairBlock> blocks_;
   std::vector<std::size_t> colours_, first_;

@@ -8,7 +8,8 @@ Vector Box::minimum_image(const Vector& difference) const {
   Vector shortest;
   for (int axis = 0; axis < 3; ++axis) {
     const double length = lengths[axis];
-    shortest[axis] = difference[axis] - length * std::round(difference[axis] / length);
+    shortest[axis] = difference[axis];
+    if (!is_walled(axis)) shortest[axis] -= length * std::round(difference[axis] / length);
   }
   return shortest;
 }
@@ -16,6 +17,7 @@ Vector Box::minimum_image(const Vector& difference) const {
 void Exchange::reset(std::size_t particles) {
   momentum.assign(particles, Vector::Zero());
   energy.assign(particles, 0.0);
+  surroundings = {};
 }
 
 std::string to_string(FailureCause cause) {

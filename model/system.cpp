@@ -10,12 +10,17 @@ namespace {
 
 /// So many that what the passes read and write stays in the cache.
 constexpr std::size_t pairs_a_chunk = 512;
+/// The other side of a contact is at rest, and no exchange exhausts it.
+constexpr Quadruple boundary_motion{0, 0, 0, 1e300};
 
 /// Brings positions into the box; throws std::invalid_argument if the state makes no sense.
 State valid(const Box& box, State state) {
   const std::size_t particles = state.size();
   if (state.velocity.size() != particles || state.internal_energy.size() != particles ||
       state.id.size() != particles) {
+    throw std::invalid_argument("the arrays of a state differ in length");
+  }
+  if (!state.species.empty() && state.species.size() != particles) {
     throw std::invalid_argument("the arrays of a state differ in length");
   }
   auto ids = state.id;
@@ -25,7 +30,9 @@ State valid(const Box& box, State state) {
   }
   for (auto& position : state.position) {
     position = box.wrap(position);
-    if (!box.contains(position)) throw std::invalid_argument("a position is not finite");
+    if (!box.contains(position)) {
+      throw std::invalid_argument("a position is not finite, or is beyond a wall");
+    }
   }
   return state;
 }
@@ -33,15 +40,23 @@ State valid(const Box& box, State state) {
 }  // namespace
 
 System::System(const Fluid& fluid, const Box& box, State state, const Noise& noise, bool frozen)
-    : fluid_(fluid),
+    : fluid_(fluid.within(box)),
       box_(box),
       state_(valid(box, std::move(state))),
       noise_(noise),
       frozen_(frozen),
       cells_(box, fluid_.range(), state_.size()),
       pairs_(cells_, fluid_.range(), 1) {
+  check_species();
   drop_if_isothermal(state_.internal_energy);
   set_threads(1);
+}
+
+void System::check_species() const {
+  for (const auto species : state_.species) {
+    if (species < fluid_.species()) continue;
+    throw std::invalid_argument("a particle is of a species that the fluid does not have");
+  }
 }
 
 void System::set_threads(unsigned count) {
@@ -51,9 +66,10 @@ void System::set_threads(unsigned count) {
 
 void System::cut_cells() {
   cells_ = CellGrid(box_, fluid_.range(), size());
-  pairs_ = PairBlocks(cells_, fluid_.range(), threads_.count());
+  pairs_ = PairBlocks(cells_, fluid_.range(), threads_.count(), fluid_.species());
+  contacts_ = BoundaryContacts();
   passes_.resize(threads_.count());
-  sums_.assign(size(), {});
+  forget_sums();
   if (measured_) measure_passes();
   pairs_version_ = 0;
 }
@@ -75,11 +91,14 @@ void System::find_pairs() {
   const PassClock clock(passes_[0].part(&PassSeconds::search));
   cells_.sort(state_, threads_);
   pairs_.find(cells_, threads_);
+  contacts_.find(fluid_, cells_, threads_);
   pairs_version_ = positions_version_;
 }
 
 void System::gather_motion(const Motion& motion, std::vector<Quadruple>& gathered) const {
-  gathered.resize(size());
+  gathered.resize(size() + BoundaryContacts::numbers);
+  std::fill(gathered.begin() + static_cast<std::ptrdiff_t>(size()), gathered.end(),
+            boundary_motion);
   const auto& place = cells_.place();
   const bool isothermal = fluid_.isothermal();
   const double bath = fluid_.bath_energy();
@@ -92,7 +111,7 @@ void System::gather_motion(const Motion& motion, std::vector<Quadruple>& gathere
 }
 
 void System::count_visit(bool noise, bool uniforms) {
-  const std::uint64_t pairs = pairs_.pairs();
+  const std::uint64_t pairs = pairs_.pairs() + contacts_.contacts();
   counters_.pair_evaluations += pairs;
   const auto normals =
       static_cast<unsigned>(fluid_.has_friction()) + static_cast<unsigned>(fluid_.has_conduction());
@@ -116,7 +135,7 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
         return block.found.size == 0 || has_kept_normals(block, stage);
       });
   for_each_chunk([&](PairPass& pass, PairBlock& block, std::size_t first, std::size_t count) {
-    pass.geometry();
+    pass.geometry(0, count);
     const std::size_t pairs = block.found.size;
     if (kept) {
       pass.recall_normals(block.normals.data() + first, pairs);
@@ -135,8 +154,16 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
     if (trial) pass.trial(particles);
     pass.run(kernel, 0, count);
   });
-  scatter_sums(total.momentum, total.energy);
+  for_each_contact_chunk([&](PairPass& pass, std::size_t boundary, std::size_t count) {
+    pass.draw_contact_normals(noise_, stage, BoundaryContacts::id(boundary));
+    pass.draw_no_uniforms();
+    pass.motion(particles, 0, count);
+    if (trial) pass.trial(particles);
+    pass.run(kernel, 0, count);
+  });
+  scatter_sums(total.momentum, total.energy, total.surroundings);
   drop_if_isothermal(total.energy);
+  drop_if_isothermal(total.surroundings);
   count_visit(!kept, false);
 }
 
@@ -144,18 +171,45 @@ void System::for_each_chunk(
     FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer) {
   summing_ = true;
   threads_.phases(pairs_.colours(), [&](unsigned thread, std::size_t colour, std::size_t task) {
-    PairBlock& block = pairs_.block(colour, task);
-    PairPass& pass = passes_[thread];
-    for (std::size_t first = 0; first < block.found.size; first += pairs_a_chunk) {
-      const std::size_t count = std::min(pairs_a_chunk, block.found.size - first);
+    for_each_run(passes_[thread], pairs_.block(colour, task), answer);
+  });
+}
+
+void System::for_each_run(
+    PairPass& pass, PairBlock& block,
+    FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer) {
+  std::size_t first = 0;
+  for (std::size_t kind = 0; kind < block.kind_end.size(); ++kind) {
+    pass.set_law(fluid_.law(kind / fluid_.species(), kind % fluid_.species()));
+    for (const std::size_t end = block.kind_end[kind]; first < end;) {
+      const std::size_t count = std::min(pairs_a_chunk, end - first);
       pass.take(fluid_, cells_, block.found, first, count);
       answer(pass, block, first, count);
+      pass.add(sums_.data());
+      first += count;
+    }
+  }
+}
+
+void System::for_each_contact_chunk(
+    FunctionReference<void(PairPass&, std::size_t, std::size_t)> answer) {
+  if (!contacts_.any()) return;
+  threads_.phases(contacts_.phases(), [&](unsigned thread, std::size_t phase, std::size_t task) {
+    const auto& group = contacts_.group(phase, task);
+    PairPass& pass = passes_[thread];
+    pass.set_law(*group.law);
+    for (std::size_t first = 0; first < group.contacts.size; first += pairs_a_chunk) {
+      const std::size_t count = std::min(pairs_a_chunk, group.contacts.size - first);
+      pass.take(fluid_, cells_, group.contacts, first, count);
+      pass.contact_geometry(group.boundary);
+      answer(pass, group.boundary, count);
       pass.add(sums_.data());
     }
   });
 }
 
-void System::scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy) {
+void System::scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy,
+                          Surroundings& surroundings) {
   momentum.resize(size());
   energy.resize(size());
   const auto& place = cells_.place();
@@ -166,7 +220,18 @@ void System::scatter_sums(std::vector<Vector>& momentum, std::vector<double>& en
       sums_[n] = {};  // ready for the next
     }
   });
+  surroundings = {};
+  for (std::size_t number = 0; contacts_.any() && number < BoundaryContacts::numbers; ++number) {
+    const auto& sum = sums_[size() + number];
+    surroundings[BoundaryContacts::boundary(number)] += {Vector(sum.x, sum.y, sum.z), sum.energy};
+    sums_[size() + number] = {};
+  }
   summing_ = false;
+}
+
+void System::drop_if_isothermal(Surroundings& surroundings) const {
+  if (!fluid_.isothermal()) return;
+  for (auto& received : surroundings) received.energy = 0;
 }
 
 void System::drop_if_isothermal(std::vector<double>& energies) const {
@@ -174,16 +239,40 @@ void System::drop_if_isothermal(std::vector<double>& energies) const {
 }
 
 void System::forget_sums() {
-  sums_.assign(size(), {});
+  sums_.assign(size() + BoundaryContacts::numbers, {});
   for (auto& block : pairs_.all()) block.normals.clear();
   summing_ = false;
+}
+
+void System::note_failed(const PairIndices& pairs, std::size_t from, std::size_t to,
+                         std::vector<std::uint32_t>& failed) const {
+  for (std::size_t pair = from; pair < to; ++pair) {
+    for (const auto particle : {pairs.i[pair], pairs.j[pair]}) {
+      if (particle < size() && motion_[particle].energy <= 0) {
+        failed.push_back(cells_.id()[particle]);
+      }
+    }
+  }
 }
 
 void System::sweep_groups(PairPass& pass, const PairGroups& groups, const PassParticles& particles,
                           const PairKernel& kernel, const Sweep& how,
                           std::vector<std::uint32_t>& failed) {
+  const std::size_t species = fluid_.species(), kinds = species * species;
+  const auto set_law = [&](std::size_t g) {
+    const std::size_t kind = g % kinds;
+    pass.set_law(fluid_.law(kind / species, kind % species));
+  };
+  const auto begin = [&](std::size_t g) { return g > 0 ? groups.end[g - 1] : 0; };
   pass.take(fluid_, cells_, groups.pairs, 0, groups.pairs.size);
-  pass.geometry();
+  if (kinds == 1) {
+    set_law(0);
+    pass.geometry(0, groups.pairs.size);
+  }
+  for (std::size_t g = 0; kinds > 1 && g < groups.end.size(); ++g) {
+    set_law(g);
+    pass.geometry(begin(g), groups.end[g]);
+  }
   pass.draw_normals(noise_, how.stage);
   if (how.uniforms) {
     pass.draw_uniforms(noise_, how.stage);
@@ -192,45 +281,88 @@ void System::sweep_groups(PairPass& pass, const PairGroups& groups, const PassPa
   }
   for (std::size_t n = 0; n < groups.end.size(); ++n) {
     const std::size_t g = how.order == SweepOrder::forward ? n : groups.end.size() - 1 - n;
-    const std::size_t from = g > 0 ? groups.end[g - 1] : 0, to = groups.end[g];
+    const std::size_t from = begin(g), to = groups.end[g];
+    set_law(g);
     pass.motion(particles, from, to);
     pass.run(kernel, from, to);
     // Frozen energies are those at the start for every pair: only the end counts.
     if (pass.apply(particles, from, to) || how.energies == SweepEnergies::frozen) continue;
     // A later pair could lift an energy above zero again: a fault in passing is a fault.
-    for (std::size_t pair = from; pair < to; ++pair) {
-      for (const auto particle : {groups.pairs.i[pair], groups.pairs.j[pair]}) {
-        if (motion_[particle].energy <= 0) failed.push_back(cells_.id()[particle]);
-      }
+    note_failed(groups.pairs, from, to, failed);
+  }
+}
+
+void System::sweep_pairs(const PassParticles& particles, const PairKernel& kernel, const Sweep& how,
+                         std::vector<std::vector<std::uint32_t>>& failed) {
+  if (how.sequence == SweepSequence::by_ids) {
+    sweep_groups(passes_[0], pairs_.by_ids(cells_), particles, kernel, how, failed[0]);
+    return;
+  }
+  const auto colours = pairs_.colours();
+  std::vector<std::size_t> tasks(colours.begin(), colours.end());
+  const bool reverse = how.order == SweepOrder::reverse;
+  if (reverse) std::reverse(tasks.begin(), tasks.end());
+  threads_.phases(tasks, [&](unsigned thread, std::size_t phase, std::size_t task) {
+    PairBlock& block = pairs_.block(reverse ? tasks.size() - 1 - phase : phase, task);
+    {
+      const PassClock clock(passes_[thread].part(&PassSeconds::search));
+      pairs_.group(block, cells_);
     }
+    sweep_groups(passes_[thread], block.groups, particles, kernel, how, failed[thread]);
+  });
+}
+
+void System::sweep_contacts(const PassParticles& particles, const PairKernel& kernel,
+                            const Sweep& how, std::vector<std::vector<std::uint32_t>>& failed) {
+  if (!contacts_.any()) return;
+  const auto phases = contacts_.phases();
+  std::vector<std::size_t> tasks(phases.begin(), phases.end());
+  const bool reverse = how.order == SweepOrder::reverse;
+  if (reverse) std::reverse(tasks.begin(), tasks.end());
+  received_.assign(BoundaryContacts::numbers, {});
+  threads_.phases(tasks, [&](unsigned thread, std::size_t phase, std::size_t task) {
+    const auto& group = contacts_.group(reverse ? tasks.size() - 1 - phase : phase, task);
+    PairPass& pass = passes_[thread];
+    pass.set_law(*group.law);
+    for (std::size_t first = 0; first < group.contacts.size; first += pairs_a_chunk) {
+      const std::size_t count = std::min(pairs_a_chunk, group.contacts.size - first);
+      const auto id = BoundaryContacts::id(group.boundary);
+      pass.take(fluid_, cells_, group.contacts, first, count);
+      pass.contact_geometry(group.boundary);
+      pass.draw_contact_normals(noise_, how.stage, id);
+      if (how.uniforms) {
+        pass.draw_contact_uniforms(noise_, how.stage, id);
+      } else {
+        pass.draw_no_uniforms();
+      }
+      pass.motion(particles, 0, count);
+      pass.run(kernel, 0, count);
+      if (pass.apply_contacts(particles, 0, count)) continue;
+      if (how.energies == SweepEnergies::frozen) continue;
+      note_failed(group.contacts, first, first + count, failed[thread]);
+    }
+  });
+  for (std::size_t number = 0; number < BoundaryContacts::numbers; ++number) {
+    const auto& sum = received_[number];
+    state_.surroundings[BoundaryContacts::boundary(number)] +=
+        {Vector(sum.x, sum.y, sum.z), sum.energy};
   }
 }
 
 void System::sweep(const PairKernel& kernel, const Sweep& how) {
   find_pairs();
   gather_motion(state_, motion_);
-  PassParticles particles{motion_.data(), nullptr, nullptr, motion_.data()};
+  received_.resize(BoundaryContacts::numbers);
+  PassParticles particles{motion_.data(), nullptr, nullptr, motion_.data(), received_.data()};
   if (how.energies == SweepEnergies::frozen) {
     frozen_motion_ = motion_;
     particles.energy = frozen_motion_.data();
   }
   std::vector<std::vector<std::uint32_t>> failed(threads_.count());
-  if (how.sequence == SweepSequence::by_ids) {
-    sweep_groups(passes_[0], pairs_.by_ids(cells_), particles, kernel, how, failed[0]);
-  } else {
-    const auto colours = pairs_.colours();
-    std::vector<std::size_t> tasks(colours.begin(), colours.end());
-    const bool reverse = how.order == SweepOrder::reverse;
-    if (reverse) std::reverse(tasks.begin(), tasks.end());
-    threads_.phases(tasks, [&](unsigned thread, std::size_t phase, std::size_t task) {
-      PairBlock& block = pairs_.block(reverse ? tasks.size() - 1 - phase : phase, task);
-      {
-        const PassClock clock(passes_[thread].part(&PassSeconds::search));
-        pairs_.group(block);
-      }
-      sweep_groups(passes_[thread], block.groups, particles, kernel, how, failed[thread]);
-    });
-  }
+  // The reverse of a sweep meets the walls first.
+  if (how.order == SweepOrder::reverse) sweep_contacts(particles, kernel, how, failed);
+  sweep_pairs(particles, kernel, how, failed);
+  if (how.order == SweepOrder::forward) sweep_contacts(particles, kernel, how, failed);
   const auto& place = cells_.place();
   std::atomic<bool> sound = true;
   for_each_particle([&](std::size_t begin, std::size_t end) {
@@ -255,29 +387,57 @@ void System::for_each_pair(FunctionReference<void(const Geometry&)> visit) {
   for (const auto& block : pairs_.all()) {
     PairPass& pass = passes_[0];
     pass.take(fluid_, cells_, block.found, 0, block.found.size);
-    pass.geometry();
-    const PairArrays& pair = pass.arrays();
-    for (std::size_t n = 0; n < block.found.size; ++n) {
-      const bool has_direction = pair.e_x[n] != 0 || pair.e_y[n] != 0 || pair.e_z[n] != 0;
-      if (pair.r[n] >= fluid_.range() || !has_direction) continue;
-      visit({place[block.found.i[n]], place[block.found.j[n]],
-             Vector(pair.e_x[n], pair.e_y[n], pair.e_z[n]), pair.r[n], pair.w_friction[n],
-             pair.w_heat[n]});
+    std::size_t n = 0;
+    for (std::size_t kind = 0; kind < block.kind_end.size(); ++kind) {
+      const PairLaw& law = fluid_.law(kind / fluid_.species(), kind % fluid_.species());
+      pass.set_law(law);
+      pass.geometry(n, block.kind_end[kind]);
+      const PairArrays& pair = pass.arrays();
+      for (; n < block.kind_end[kind]; ++n) {
+        const bool has_direction = pair.e_x[n] != 0 || pair.e_y[n] != 0 || pair.e_z[n] != 0;
+        if (pair.r[n] >= fluid_.range() || !has_direction) continue;
+        visit({place[block.found.i[n]], place[block.found.j[n]],
+               Vector(pair.e_x[n], pair.e_y[n], pair.e_z[n]), pair.r[n], pair.w_friction[n],
+               pair.w_heat[n], &law});
+      }
     }
   }
 }
 
-void System::apply(const Exchange& exchange) {
-  const double inverse_mass = 1 / fluid_.mass();
+void System::apply(const Exchange& exchange, double share) {
+  give_surroundings(exchange, share);
+  if (fluid_.species() == 1) {
+    const double per_mass = share / fluid_.mass();
+    update([&](std::size_t i, Vector& velocity, double& internal_energy) {
+      velocity += exchange.momentum[i] * per_mass;
+      internal_energy += share * exchange.energy[i];
+    });
+    return;
+  }
   update([&](std::size_t i, Vector& velocity, double& internal_energy) {
-    velocity += exchange.momentum[i] * inverse_mass;
-    internal_energy += exchange.energy[i];
+    velocity += exchange.momentum[i] * (share / mass(i));
+    internal_energy += share * exchange.energy[i];
   });
+}
+
+void System::give_surroundings(const Exchange& exchange, double share) {
+  for (std::size_t n = 0; n < surrounding_places; ++n) {
+    const auto& received = exchange.surroundings[n];
+    state_.surroundings[n] += {share * received.momentum, share * received.energy};
+  }
+}
+
+void System::give_surroundings(double duration) {
+  renew_conservative();
+  for (std::size_t n = 0; n < surrounding_places; ++n) {
+    state_.surroundings[n].momentum += duration * surroundings_force_[n].momentum;
+  }
 }
 
 void System::set_motion(const Motion& motion) {
   state_.velocity = motion.velocity;
   state_.internal_energy = motion.internal_energy;
+  state_.surroundings = motion.surroundings;
   drop_if_isothermal(state_.internal_energy);
   check();
 }
@@ -310,19 +470,43 @@ void System::throw_failure(std::vector<std::uint32_t> in_passing) const {
 void System::kick(double duration) {
   if (!fluid_.has_repulsion()) return;
   const auto& force = conservative_force();
+  give_surroundings(duration);
   const double factor = duration / fluid_.mass();
+  const bool alike = fluid_.species() == 1;
   for_each_particle([&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) state_.velocity[i] += factor * force[i];
+    for (std::size_t i = begin; i < end; ++i) {
+      state_.velocity[i] += (alike ? factor : duration / mass(i)) * force[i];
+    }
   });
+}
+
+Vector System::reflect(Vector position, std::size_t place, Surroundings& received) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = box_.lengths[axis];
+    if (!box_.is_walled(axis) || (position[axis] >= 0 && position[axis] <= length)) continue;
+    const bool upper = position[axis] > length;
+    position[axis] = upper ? 2 * length - position[axis] : -position[axis];
+    double& velocity = state_.velocity[place][axis];
+    received[static_cast<std::size_t>(2 * axis + (upper ? 1 : 0))].momentum[axis] +=
+        2 * mass(place) * velocity;
+    velocity = -velocity;
+  }
+  return position;
 }
 
 void System::move(double duration) {
   if (frozen_) return;
+  const bool walled = box_.is_walled(0) || box_.is_walled(1) || box_.is_walled(2);
+  // Shares that do not depend on the threads: sums then do not either.
+  constexpr std::size_t shares = 8;
+  std::array<Surroundings, shares> received;
   std::atomic<bool> sound = true, inside = true;
-  for_each_particle([&](std::size_t begin, std::size_t end) {
+  const std::size_t tasks[] = {shares};
+  threads_.phases(tasks, [&](unsigned, std::size_t, std::size_t share) {
     bool all_sound = true, all_inside = true;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vector moved = box_.wrap(state_.position[i] + duration * state_.velocity[i]);
+    for (std::size_t i = size() * share / shares; i < size() * (share + 1) / shares; ++i) {
+      Vector moved = box_.wrap(state_.position[i] + duration * state_.velocity[i]);
+      if (walled) moved = reflect(moved, i, received[share]);
       const bool sound_here = is_sound(i), inside_here = box_.contains(moved);
       // Whoever looks at a failed state finds every particle in the box.
       if (sound_here & inside_here) state_.position[i] = moved;
@@ -332,10 +516,13 @@ void System::move(double duration) {
     if (!all_sound) sound = false;
     if (!all_inside) inside = false;
   });
+  for (const auto& of_share : received) {
+    for (std::size_t n = 0; n < surrounding_places; ++n) state_.surroundings[n] += of_share[n];
+  }
   ++positions_version_;
   if (!sound) throw_failure();
   if (inside) return;
-  // So far beyond the box that rounding leaves no image inside.
+  // So far beyond the box that rounding leaves no image inside, or through two walls at once.
   std::vector<std::uint32_t> lost;
   for (std::size_t i = 0; i < size(); ++i) {
     const Vector moved = box_.wrap(state_.position[i] + duration * state_.velocity[i]);
@@ -349,20 +536,25 @@ void System::renew_conservative() {
   if (!fluid_.has_repulsion()) {
     force_.assign(size(), Vector::Zero());
     potential_share_.assign(size(), 0.0);
+    surroundings_force_ = {};
     conservative_version_ = positions_version_;
     return;
   }
   find_pairs();
   const auto repulsion = [&](const auto& pair) {
-    const auto share = 0.5 * fluid_.potential(pair.r);
-    return Transfer{fluid_.repulsive_force(pair.r), share, share};
+    const PairLaw& law = *pair.law;
+    const auto potential = law.potential(pair.r);
+    return Transfer{law.repulsive_force(pair.r), law.potential_share_i() * potential,
+                    law.potential_share_j() * potential};
   };
   const PairKernel kernel = PairKernel::of(repulsion);
   for_each_chunk([&](PairPass& pass, PairBlock&, std::size_t, std::size_t count) {
-    pass.geometry();
+    pass.geometry(0, count);
     pass.run(kernel, 0, count);
   });
-  scatter_sums(force_, potential_share_);
+  for_each_contact_chunk(
+      [&](PairPass& pass, std::size_t, std::size_t count) { pass.run(kernel, 0, count); });
+  scatter_sums(force_, potential_share_, surroundings_force_);
   conservative_version_ = positions_version_;
   count_visit(false, false);
 }
@@ -379,8 +571,12 @@ const std::vector<double>& System::potential_shares() {
 
 double System::kinetic_energy() const {
   double sum = 0;
-  for (const auto& velocity : state_.velocity) sum += velocity.squaredNorm();
-  return 0.5 * fluid_.mass() * sum;
+  if (fluid_.species() == 1) {
+    for (const auto& velocity : state_.velocity) sum += velocity.squaredNorm();
+    return 0.5 * fluid_.mass() * sum;
+  }
+  for (std::size_t i = 0; i < size(); ++i) sum += mass(i) * state_.velocity[i].squaredNorm();
+  return 0.5 * sum;
 }
 
 double System::internal_energy() const {
@@ -397,13 +593,14 @@ double System::potential_energy() {
 
 Vector System::momentum() const {
   Vector sum = Vector::Zero();
-  for (const auto& velocity : state_.velocity) sum += velocity;
-  return fluid_.mass() * sum;
+  for (std::size_t i = 0; i < size(); ++i) sum += mass(i) * state_.velocity[i];
+  return sum;
 }
 
 void System::set_state(State state) {
   const bool as_many = state.size() == size();
   state_ = valid(box_, std::move(state));
+  check_species();
   drop_if_isothermal(state_.internal_energy);
   ++positions_version_;
   if (!as_many) cut_cells();

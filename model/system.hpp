@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "model/boundary_contacts.hpp"
 #include "model/cell_grid.hpp"
 #include "model/fluid.hpp"
 #include "model/kernel.hpp"
@@ -24,15 +25,17 @@ struct Counters {
   std::uint64_t solver_iterations = 0;
 };
 
-/// N particles of a fluid in a periodic box: the one interface through which integrators see the
-/// model. Kernels say what a pair exchanges; how pairs are found, stored and visited is hidden
-/// here. In an isothermal fluid every internal energy of the state is 0 and stays so: kernels see
-/// Fluid::bath_energy() in its place, and what they, exchanges and updates give to it the bath
-/// takes.
+/// N particles of a fluid in a box: the one interface through which integrators see the model.
+/// Kernels say what a pair exchanges; how pairs are found, stored and visited is hidden here. Walls
+/// and a field are partners of infinite mass in pairs like any other, so that kernels need not know
+/// of them; what they receive stands in Motion::surroundings. In an isothermal fluid every internal
+/// energy of the state is 0 and stays so: kernels see Fluid::bath_energy() in its place, and what
+/// they, exchanges and updates give to it the bath takes.
 class System {
  public:
   /// `frozen` particles keep their positions. Throws std::invalid_argument if the arrays differ in
-  /// length, ids repeat, or the box is shorter than twice the range of the fluid.
+  /// length, ids repeat, a species is none of the fluid's, walls or field make no sense, or the box
+  /// is shorter than twice the range of the fluid.
   System(const Fluid& fluid, const Box& box, State state, const Noise& noise, bool frozen = false);
 
   const Fluid& fluid() const { return fluid_; }
@@ -40,6 +43,13 @@ class System {
   const State& state() const { return state_; }
   const Motion& motion() const { return state_; }
   std::size_t size() const { return state_.size(); }
+  /// Mass of the particle at a place in the state.
+  double mass(std::size_t place) const {
+    return fluid_.mass(state_.species.empty() ? 0 : state_.species[place]);
+  }
+  const EquationOfState& equation_of_state(std::size_t place) const {
+    return fluid_.equation_of_state(state_.species.empty() ? 0 : state_.species[place]);
+  }
   bool frozen() const { return frozen_; }
   const Counters& counters() const { return counters_; }
   void count_solver_iteration() { ++counters_.solver_iterations; }
@@ -78,8 +88,12 @@ class System {
     sweep(PairKernel::of(kernel), how);
   }
 
-  /// Adds an exchange to momenta and internal energies. Throws StepFailure.
-  void apply(const Exchange& exchange);
+  /// Adds a share of an exchange to momenta and internal energies. Throws StepFailure.
+  void apply(const Exchange& exchange, double share = 1);
+  /// Gives the surroundings their share of an exchange, or of the conservative forces over a
+  /// duration: for who adds the particles' by update().
+  void give_surroundings(const Exchange& exchange, double share);
+  void give_surroundings(double duration);
   /// Replaces velocities and internal energies. Throws StepFailure.
   void set_motion(const Motion& motion);
   /// change(place, velocity, internal_energy) for every particle, on any thread. Throws
@@ -89,12 +103,13 @@ class System {
 
   /// Momenta += conservative force x duration, the forces of the present positions.
   void kick(double duration);
-  /// Positions += velocity x duration; frozen particles stay.
+  /// Positions += velocity x duration, reflected where walls stand; frozen particles stay.
   void move(double duration);
 
   /// Conservative force on each particle; computed once per set of positions.
   const std::vector<Vector>& conservative_force();
-  /// Each particle's half of its pairs' potential energies; computed once per set of positions.
+  /// Each particle's half of its pairs' potential energies, and all of those at walls and in a
+  /// field; computed once per set of positions.
   const std::vector<double>& potential_shares();
 
   double kinetic_energy() const;
@@ -108,6 +123,7 @@ class System {
     std::uint32_t i, j;  ///< places in the state, id[i] < id[j]
     Vector e;            ///< (r_i - r_j)/r
     double r, w_friction, w_heat;
+    const PairLaw* law;  ///< of the pair's kind
   };
   /// Visits every pair within the fluid's range: visit(const Geometry&).
   void for_each_pair(FunctionReference<void(const Geometry&)> visit);
@@ -118,8 +134,14 @@ class System {
  private:
   void accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total, Stage stage);
   void sweep(const PairKernel& kernel, const Sweep& how);
+  void sweep_pairs(const PassParticles& particles, const PairKernel& kernel, const Sweep& how,
+                   std::vector<std::vector<std::uint32_t>>& failed);
   void sweep_groups(PairPass& pass, const PairGroups& groups, const PassParticles& particles,
                     const PairKernel& kernel, const Sweep& how, std::vector<std::uint32_t>& failed);
+  void sweep_contacts(const PassParticles& particles, const PairKernel& kernel, const Sweep& how,
+                      std::vector<std::vector<std::uint32_t>>& failed);
+  void note_failed(const PairIndices& pairs, std::size_t from, std::size_t to,
+                   std::vector<std::uint32_t>& failed) const;
   /// Makes cells, blocks and memory for as many particles and threads as there are.
   void cut_cells();
   void find_pairs();
@@ -127,12 +149,23 @@ class System {
   /// a block's pairs.
   void for_each_chunk(
       FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer);
+  void for_each_run(
+      PairPass& pass, PairBlock& block,
+      FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer);
+  /// The same for contacts with boundaries: answer(pass, boundary, count).
+  void for_each_contact_chunk(FunctionReference<void(PairPass&, std::size_t, std::size_t)> answer);
   /// Leaves nothing behind of a visit that a kernel has broken off.
   void forget_sums();
   /// Hands out the sums and leaves zeros.
-  void scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy);
+  void scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy,
+                    Surroundings& surroundings);
   /// Leaves zeros where there are no internal energies.
   void drop_if_isothermal(std::vector<double>& energies) const;
+  void drop_if_isothermal(Surroundings& surroundings) const;
+  /// Brings a position that a wall has been passed on the way to back inside, and turns the
+  /// velocity round.
+  Vector reflect(Vector position, std::size_t place, Surroundings& received);
+  void check_species() const;
   bool has_kept_normals(const PairBlock& block, Stage stage) const;
   void gather_motion(const Motion& motion, std::vector<Quadruple>& gathered) const;
   void count_visit(bool noise, bool uniforms);
@@ -160,6 +193,7 @@ class System {
   Threads threads_;
   CellGrid cells_;
   PairBlocks pairs_;
+  BoundaryContacts contacts_;
   std::vector<PairPass> passes_;  ///< one for each thread
   Counters counters_;
   bool measured_ = false;
@@ -167,8 +201,11 @@ class System {
   std::uint64_t positions_version_ = 1;
   std::uint64_t pairs_version_ = 0;
   std::uint64_t conservative_version_ = 0;
-  std::vector<Quadruple> motion_, trial_, frozen_motion_, sums_;  ///< in the order of cells
+  /// In the order of cells, and then by the numbers of the contacts' other sides.
+  std::vector<Quadruple> motion_, trial_, frozen_motion_, sums_;
+  std::vector<Quadruple> received_;  ///< in a sweep, by the contacts' other sides
   std::vector<Vector> force_;
+  Surroundings surroundings_force_ = {};
   std::vector<double> potential_share_;
 };
 

@@ -205,7 +205,7 @@ struct Dense {
     state = random_state(uniform, Box{lengths}, particles);
     cells.sort(state, Threads());
     blocks.find(cells, Threads());
-    for (auto& block : blocks.all()) blocks.group(block);
+    for (auto& block : blocks.all()) blocks.group(block, cells);
   }
 
   /// The pairs by ids in the order of a sweep: colours, blocks, groups.

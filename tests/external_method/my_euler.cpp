@@ -19,14 +19,14 @@ template <class V>
 Transfer<V> collide(const Fluid& fluid, const Pair<V>& pair, double dt) {
   using std::sqrt;
   Transfer<V> total;
-  if (fluid.has_repulsion()) total.momentum += fluid.repulsive_force(pair.r) * dt;
+  if (fluid.has_repulsion()) total.momentum += fluid.repulsive_force(pair) * dt;
   if (fluid.has_friction()) {
     const auto law = fluid.friction(pair);
     const V drag = (law.friction + law.induced) * pair.v * dt;
     const V kick = sqrt(law.noise_squared * dt) * pair.noise;
     // What the pair's motion loses becomes heat, half in each particle.
     const V heat =
-        0.5 * (pair.v * (drag - kick) - law.noise_squared * dt / (2 * fluid.reduced_mass()));
+        0.5 * (pair.v * (drag - kick) - law.noise_squared * dt / (2 * fluid.reduced_mass(pair)));
     total += {kick - drag, heat, heat};
   }
   if (fluid.has_conduction()) {

@@ -1,0 +1,68 @@
+#include "model/boundary_contacts.hpp"
+
+namespace driftless {
+
+void BoundaryContacts::list_groups(const Fluid& fluid, const Box& box) {
+  groups_.clear();
+  species_.clear();
+  share_.clear();
+  phases_.clear();
+  first_.clear();
+  if (!box.is_bounded()) return;
+  // Opposite walls have no particle in common; every other two may have.
+  for (std::size_t first = 0; first < boundaries; first += 2) {
+    first_.push_back(groups_.size());
+    for (std::size_t boundary = first; boundary < std::min(first + 2, boundaries); ++boundary) {
+      for (std::size_t species = 0; species < fluid.species(); ++species) {
+        const PairLaw* const law = fluid.boundary_law(boundary, species);
+        if (!law) continue;
+        for (std::size_t share = 0; share < shares; ++share) {
+          groups_.push_back({{}, law, boundary});
+          species_.push_back(species);
+          share_.push_back(share);
+        }
+      }
+    }
+    phases_.push_back(groups_.size() - first_.back());
+  }
+}
+
+void BoundaryContacts::search(Group& group, std::size_t species, std::size_t share,
+                              const CellGrid& cells) const {
+  const std::size_t particles = cells.particles();
+  const auto begin = static_cast<std::uint32_t>(particles * share / shares);
+  const auto end = static_cast<std::uint32_t>(particles * (share + 1) / shares);
+  const auto side = static_cast<std::uint32_t>(particles + group.boundary * shares + share);
+  const bool field = group.boundary == field_place, upper = group.boundary % 2 == 1;
+  const std::size_t axis = group.boundary / 2;
+  const double length = field ? 0 : cells.box().lengths[static_cast<Eigen::Index>(axis)];
+  const double range = group.law->range();
+  group.contacts.size = 0;
+  for (std::uint32_t n = begin; n < end; ++n) {
+    if (cells.species(n) != species) continue;
+    if (!field) {
+      const Quadruple& at = cells.position()[n];
+      const double x = axis == 0 ? at.x : axis == 1 ? at.y : at.z;
+      if ((upper ? length - x : x) >= range) continue;
+    }
+    group.contacts.append(n, side);
+  }
+  group.contacts.pad(begin < end ? begin : 0, side);
+}
+
+void BoundaryContacts::find(const Fluid& fluid, const CellGrid& cells, const Threads& threads) {
+  if (groups_.empty()) list_groups(fluid, cells.box());
+  const std::size_t tasks[] = {groups_.size()};
+  if (groups_.empty()) return;
+  threads.phases(tasks, [&](unsigned, std::size_t, std::size_t n) {
+    search(groups_[n], species_[n], share_[n], cells);
+  });
+}
+
+std::size_t BoundaryContacts::contacts() const {
+  std::size_t sum = 0;
+  for (const auto& group : groups_) sum += group.contacts.size;
+  return sum;
+}
+
+}  // namespace driftless

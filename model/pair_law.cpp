@@ -1,0 +1,50 @@
+#include "model/pair_law.hpp"
+
+#include <limits>
+
+namespace driftless {
+namespace {
+
+double reduced(double m_i, double m_j) {
+  if (m_i == m_j) return m_i / 2;
+  return std::isinf(m_j) ? m_i : m_i * m_j / (m_i + m_j);
+}
+
+}  // namespace
+
+PairLaw::PairLaw(const FluidParameters& fluid, const PairCoefficients& coefficients,
+                 const Partner& i, const Partner& j)
+    : coefficients_(coefficients),
+      i_(i),
+      j_(j),
+      boltzmann_(fluid.boltzmann),
+      temperature_(fluid.temperature),
+      weight_exponent_(fluid.weight_exponent),
+      reduced_mass_(reduced(i.mass, j.mass)),
+      share_i_(std::isinf(j.mass) ? 1 : 0.5),
+      closure_(fluid.friction_closure),
+      heat_form_(fluid.heat_form) {}
+
+PairLaw PairLaw::uniform_field(const FluidParameters& fluid, double force, const Partner& i) {
+  const Partner earth{std::numeric_limits<double>::infinity(), i.state};
+  PairLaw law(fluid, {.repulsion = force}, i, earth);
+  law.uniform_ = true;
+  return law;
+}
+
+double PairLaw::range() const {
+  double range = 0;
+  if (uniform_) return range;
+  if (has_repulsion()) range = std::max(range, coefficients_.repulsion_range);
+  if (has_friction()) range = std::max(range, coefficients_.friction_range);
+  if (has_conduction()) range = std::max(range, coefficients_.heat_range);
+  return range;
+}
+
+double PairLaw::potential_laplacian(double distance) const {
+  const double range = coefficients_.repulsion_range;
+  if (distance >= range) return 0;
+  return coefficients_.repulsion / range - 2 * repulsive_force(distance) / distance;
+}
+
+}  // namespace driftless
