@@ -12,13 +12,13 @@
 #include "experiments/cell.hpp"
 #include "experiments/files.hpp"
 #include "experiments/interrupt.hpp"
+#include "experiments/kept_parts.hpp"
 #include "experiments/parallel.hpp"
 #include "experiments/processors.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/result_file.hpp"
 #include "experiments/scene_keys.hpp"
-#include "experiments/text_file.hpp"
 #include "experiments/timing.hpp"
 
 namespace driftless {
@@ -108,10 +108,7 @@ void Campaign::list_cells() {
         auto cell = std::make_unique<Cell>(*prepared, choice, time_step,
                                            options_.directory / "cells" / file);
         if (refused) cell->record = refused_cell(*prepared, choice, time_step, *refused);
-        if (!refused && fs::exists(cell->file)) {
-          cell->record = json::parse(read_text_file(cell->file), nullptr, false);
-          if (cell->record.is_discarded()) cell->record = nullptr;
-        }
+        if (!refused) cell->record = kept_record(cell->file);
         cells_.push_back(std::move(cell));
       }
     }
@@ -215,8 +212,7 @@ void Campaign::time_all() {
   }
   // One pass over all cells, or none: times of different passes do not compare.
   const auto file = options_.directory / "timing.json";
-  json timing;
-  if (fs::exists(file)) timing = json::parse(read_text_file(file), nullptr, false);
+  json timing = kept_record(file);
   if (!timing.is_object() || timing.value("cells", "") != fingerprint(keys)) {
     timing = {{"cells", fingerprint(keys)}, {"costs", json::array()}};
     for (const auto& cost : time_cells(timed)) {

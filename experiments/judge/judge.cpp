@@ -2,32 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <atomic>
+#include <map>
 
-#include "experiments/files.hpp"
-#include "experiments/interrupt.hpp"
 #include "experiments/judge/trade.hpp"
-#include "experiments/parallel.hpp"
+#include "experiments/kept_parts.hpp"
 #include "experiments/processors.hpp"
-#include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/study_parts.hpp"
-#include "experiments/text_file.hpp"
 
 namespace driftless::judge {
 namespace {
 
 using nlohmann::json;
-namespace fs = std::filesystem;
-
-struct Job {
-  const Examination* examination;
-  const Candidate* candidate;
-  Part part;
-  fs::path file;  ///< where its record is kept once finished
-  json record;    ///< null until finished
-};
 
 class Judgement {
  public:
@@ -41,82 +27,44 @@ class Judgement {
   json run();
 
  private:
-  void list_jobs();
-  void run_jobs();
+  void run_parts();
   json method_record(const Candidate& candidate) const;
   Conclusion conclude(const Candidate& candidate, const Examination& examination) const;
-  std::string interrupted() const;
 
   const std::vector<Candidate>& candidates_;
   const std::vector<const Examination*>& examinations_;
   const JudgeOptions& options_;
   unsigned threads_;
-  std::vector<Job> jobs_;
-  std::atomic<std::size_t> finished_ = 0;
+  std::map<std::pair<const Candidate*, const Examination*>, Records> records_;
 };
 
-void Judgement::list_jobs() {
+void Judgement::run_parts() {
   const auto& conditions = options_.conditions;
+  std::vector<KeptPart> kept;
+  std::vector<std::pair<Records*, std::string>> places;
   for (const auto& candidate : candidates_) {
     for (const auto* examination : examinations_) {
+      Records& records = records_[{&candidate, examination}];
       for (auto& part : examination->parts(candidate, conditions)) {
-        const json identity = {program_fingerprint(), driftless::to_json(candidate.choice),
-                               examination->name,     part.name,
-                               conditions.seed,       to_string(conditions.depth)};
-        auto file = options_.directory / "parts" / (fingerprint(identity.dump()) + ".json");
-        json record;
-        if (fs::exists(file)) {
-          record = json::parse(read_text_file(file), nullptr, false);
-          if (record.is_discarded()) record = nullptr;
-        }
-        if (!record.is_null()) ++finished_;
-        jobs_.push_back(
-            {examination, &candidate, std::move(part), std::move(file), std::move(record)});
+        kept.push_back(
+            {.name = fmt::format("{}, {}, {}", candidate.name(), examination->name, part.name),
+             .identity = {driftless::to_json(candidate.choice), examination->name, part.name,
+                          conditions.seed, to_string(conditions.depth)},
+             .cost = part.cost,
+             .run = [run = std::move(part.run)](const PartPlace&) { return run(); }});
+        places.emplace_back(&records, part.name);
       }
     }
   }
-}
-
-std::string Judgement::interrupted() const {
-  return fmt::format(
-      "interrupted; {} of {} parts are finished and kept; the same command goes on: {}",
-      finished_.load(), jobs_.size(), options_.command);
-}
-
-void Judgement::run_jobs() {
-  std::vector<Job*> open;
-  double cost = 0;
-  for (auto& job : jobs_) {
-    if (!job.record.is_null()) continue;
-    open.push_back(&job);
-    cost += job.part.cost;
+  run_kept_parts(kept, {options_.directory, threads_, options_.command, options_.quiet});
+  for (std::size_t n = 0; n < kept.size(); ++n) {
+    (*places[n].first)[places[n].second] = std::move(kept[n].record);
   }
-  // The longest first, so that no core waits for a straggler at the end.
-  std::stable_sort(open.begin(), open.end(),
-                   [](const Job* a, const Job* b) { return a->part.cost > b->part.cost; });
-  Progress progress("parts", jobs_.size(), cost, options_.quiet);
-  progress.cells_resumed(finished_);
-  parallel(open.size(), threads_, [&](std::size_t n) {
-    Job& job = *open[n];
-    progress.replica_started();
-    job.record = job.part.run();
-    progress.replica_finished(job.part.cost);
-    write_atomically(job.file, job.record.dump());
-    ++finished_;
-    progress.cell_finished(
-        fmt::format("{}, {}, {}", job.candidate->name(), job.examination->name, job.part.name),
-        "ok");
-  });
 }
 
 Conclusion Judgement::conclude(const Candidate& candidate, const Examination& examination) const {
-  Records records;
-  for (const auto& job : jobs_) {
-    if (job.candidate == &candidate && job.examination == &examination) {
-      records[job.part.name] = job.record;
-    }
-  }
-  return examination.conclude(candidate, options_.conditions, records);
+  return examination.conclude(candidate, options_.conditions,
+                              records_.at({&candidate, &examination}));
 }
 
 json claims(const Method& method) {
@@ -147,10 +95,7 @@ json Judgement::method_record(const Candidate& candidate) const {
 }
 
 json Judgement::run() {
-  make_output_folder(options_.directory, "parts");
-  const InterruptNotice notice([this] { return interrupted(); });
-  list_jobs();
-  run_jobs();
+  run_parts();
   json judgement = {
       {"format", "driftless-judgement/1"},
       {"provenance", provenance(threads_, options_.conditions.seed, options_.command)},
