@@ -208,4 +208,13 @@ json parse_json_text(const std::string& text, const std::string& source) {
   return builder.take();
 }
 
+json rounded(const json& value) {
+  if (value.is_number_float()) return std::stod(fmt::format("{:.6g}", value.get<double>()));
+  json copy = value;
+  if (value.is_structured()) {
+    for (auto& part : copy) part = rounded(part);
+  }
+  return copy;
+}
+
 }  // namespace driftless

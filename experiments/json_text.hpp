@@ -10,4 +10,7 @@ namespace driftless {
 /// `source`, line and column (or the path of the value) in one sentence.
 nlohmann::json parse_json_text(const std::string& text, const std::string& source);
 
+/// The same with every number that is not an integer rounded to six digits.
+nlohmann::json rounded(const nlohmann::json& value);
+
 }  // namespace driftless

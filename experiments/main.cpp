@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -15,6 +16,8 @@
 #include "experiments/provenance.hpp"
 #include "experiments/recommend.hpp"
 #include "experiments/report.hpp"
+#include "experiments/reproduce/papers.hpp"
+#include "experiments/reproduce/reproduce.hpp"
 #include "experiments/result_file.hpp"
 #include "experiments/scene_keys.hpp"
 #include "experiments/study_warnings.hpp"
@@ -40,6 +43,14 @@ struct JudgeArguments {
   std::uint64_t seed = 1;
   unsigned threads = 0;
   bool quiet = false;
+};
+
+struct ReproduceArguments {
+  std::vector<std::string> experiments;
+  std::string directory = "reproduction";
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+  bool list = false, quick = false, quiet = false;
 };
 
 std::string option_text(const OptionValue& value) {
@@ -100,6 +111,7 @@ void print_observables() {
 void print_schema(const std::string& kind) {
   const json schema = kind == "study"    ? study_schema()
                       : kind == "result" ? result_schema()
+                      : kind == "papers" ? papers_schema()
                                          : comparison_schema();
   fmt::print("{}\n", schema.dump(2));
 }
@@ -168,15 +180,57 @@ void run_judge(const JudgeArguments& arguments) {
   print_judgement(judgement, directory);
 }
 
+void list_experiments() {
+  for (const auto* experiment : reproduce::experiments()) {
+    fmt::print("{}\n  {}\n  source: {}\n", experiment->name, experiment->title, experiment->source);
+  }
+}
+
+/// The exit code: 1 if an experiment could not be run to its end.
+int print_papers(const nlohmann::json& papers, const fs::path& directory) {
+  const auto page = reproduce::write_papers(papers, directory);
+  fmt::print("{}\nPage: {}\n", reproduce::papers_summary(papers),
+             fs::absolute(page).lexically_normal().string());
+  const auto& all = papers["experiments"];
+  return std::any_of(all.begin(), all.end(),
+                     [](const json& one) { return one.contains("failure"); });
+}
+
+/// The exit code.
+int run_reproduce(const ReproduceArguments& arguments) {
+  if (arguments.list) {
+    list_experiments();
+    return 0;
+  }
+  if (arguments.experiments.empty()) {
+    throw InputError("reproduce: names of experiments are missing, or `all`; --list names them");
+  }
+  const auto experiments = reproduce::read_experiments(arguments.experiments);
+  std::string command =
+      fmt::format("driftless reproduce {} --seed {} -o {}", fmt::join(arguments.experiments, " "),
+                  arguments.seed, arguments.directory);
+  if (arguments.quick) command += " --quick";
+  const auto effort = arguments.quick ? reproduce::Effort::quick : reproduce::Effort::full;
+  const auto papers = reproduce::run_experiments(
+      experiments,
+      {arguments.directory, {effort, arguments.seed}, arguments.threads, command, arguments.quiet});
+  return print_papers(papers, arguments.directory);
+}
+
 void report(const Arguments& arguments) {
   const fs::path given = arguments.result;
-  const auto judgement = judge::read_judgement(given);
-  const auto result = judgement ? *judgement : read_result(given);
+  const auto papers = reproduce::read_papers(given);
+  const auto judgement = papers ? std::nullopt : judge::read_judgement(given);
+  const auto result = papers ? *papers : judgement ? *judgement : read_result(given);
   fs::path directory = fs::is_directory(given) ? given : given.parent_path();
   if (!arguments.directory.empty()) directory = arguments.directory;
   std::error_code error;
   if (!directory.empty()) fs::create_directories(directory, error);
-  judgement ? print_judgement(result, directory) : print_report(result, directory);
+  if (papers) {
+    print_papers(result, directory);
+  } else {
+    judgement ? print_judgement(result, directory) : print_report(result, directory);
+  }
 }
 
 struct ComparedFiles {
@@ -238,10 +292,11 @@ int main(int argc, char** argv) {
   check_command->add_option("study", arguments.study, "study file (JSON)")->required();
   check_command->callback([&] { check(arguments); });
 
-  auto* report_command =
-      app.add_subcommand("report", "write the page and summary of a result or a judgement anew");
+  auto* report_command = app.add_subcommand(
+      "report", "write the page and summary of a result, judgement or reproduction anew");
   report_command
-      ->add_option("result", arguments.result, "result.json, judgement.json or their folder")
+      ->add_option("result", arguments.result,
+                   "result.json, judgement.json, papers.json or their folder")
       ->required();
   report_command->add_option("-o,--output", arguments.directory, "another folder");
   report_command->callback([&] { report(arguments); });
@@ -283,7 +338,25 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1U, 4096U));
   judge_command->add_flag("-q,--quiet", judged.quiet, "no progress");
   judge_command->callback([&] { run_judge(judged); });
+
   int exit_code = 0;
+  ReproduceArguments reproduced;
+  auto* reproduce_command = app.add_subcommand(
+      "reproduce",
+      "run the papers' experiments, their values beside ours; finished parts are kept");
+  reproduce_command
+      ->add_option("experiment", reproduced.experiments, "names of experiments, or all")
+      ->delimiter(',');
+  reproduce_command->add_flag("--list", reproduced.list, "name all experiments and end");
+  reproduce_command->add_flag("--quick", reproduced.quick,
+                              "smaller systems or shorter runs than the papers'");
+  reproduce_command->add_option("-o,--output", reproduced.directory,
+                                "folder of the report (default: reproduction)");
+  reproduce_command->add_option("--seed", reproduced.seed, "of all noise (default 1)");
+  reproduce_command->add_option("-t,--threads", reproduced.threads, "threads (default: all)")
+      ->check(CLI::Range(1U, 4096U));
+  reproduce_command->add_flag("-q,--quiet", reproduced.quiet, "no progress");
+  reproduce_command->callback([&] { exit_code = run_reproduce(reproduced); });
   ComparedFiles files;
   CompareOptions compare_options;
   auto* compare_command = app.add_subcommand(
@@ -324,9 +397,9 @@ int main(int argc, char** argv) {
   scenes->callback([&] { print_scenes(arguments.json); });
   app.add_subcommand("observables", "list the observables")->callback(print_observables);
   auto* schema = app.add_subcommand("schema", "print the JSON Schema of a file format");
-  schema->add_option("kind", arguments.kind, "study, result or comparison")
+  schema->add_option("kind", arguments.kind, "study, result, comparison or papers")
       ->required()
-      ->check(CLI::IsMember({"study", "result", "comparison"}));
+      ->check(CLI::IsMember({"study", "result", "comparison", "papers"}));
   schema->callback([&] { print_schema(arguments.kind); });
 
   BenchArguments bench;

@@ -45,4 +45,8 @@ std::string render_judgement_page(const nlohmann::json& judgement) {
   return render(judgement_page(), judgement);
 }
 
+std::string render_papers_page(const nlohmann::json& papers) {
+  return render(papers_page(), papers);
+}
+
 }  // namespace driftless

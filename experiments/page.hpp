@@ -10,5 +10,7 @@ namespace driftless {
 std::string render_page(const nlohmann::json& result);
 /// The same of a judgement (format "driftless-judgement/1").
 std::string render_judgement_page(const nlohmann::json& judgement);
+/// The same of reproduced experiments (format "driftless-papers/1").
+std::string render_papers_page(const nlohmann::json& papers);
 
 }  // namespace driftless

@@ -39,4 +39,6 @@ json result_schema() { return json::parse(result_schema_text()); }
 
 json comparison_schema() { return json::parse(comparison_schema_text()); }
 
+json papers_schema() { return json::parse(papers_schema_text()); }
+
 }  // namespace driftless

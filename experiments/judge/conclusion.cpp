@@ -29,10 +29,6 @@ json to_json(const Finding& finding) {
   return record;
 }
 
-json to_json(const Axis& axis) {
-  return {{"title", axis.title}, {"logarithmic", axis.logarithmic}};
-}
-
 json to_json(const Series& series) {
   json points = json::array();
   for (const auto& point : series.points) {
@@ -45,13 +41,6 @@ json to_json(const Series& series) {
   return {{"name", series.name},
           {"marks", series.marks == Marks::line ? "line" : "points"},
           {"points", points}};
-}
-
-json to_json(const Chart& chart) {
-  json series = json::array();
-  for (const auto& one : chart.series) series.push_back(to_json(one));
-  return {
-      {"title", chart.title}, {"x", to_json(chart.x)}, {"y", to_json(chart.y)}, {"series", series}};
 }
 
 json to_json(const Table& table) {
@@ -103,6 +92,17 @@ Verdict overall(const Conclusion& conclusion) {
     if (found) return verdict;
   }
   return Verdict::not_applicable;
+}
+
+json to_json(const Axis& axis) {
+  return {{"title", axis.title}, {"logarithmic", axis.logarithmic}};
+}
+
+json to_json(const Chart& chart) {
+  json series = json::array();
+  for (const auto& one : chart.series) series.push_back(to_json(one));
+  return {
+      {"title", chart.title}, {"x", to_json(chart.x)}, {"y", to_json(chart.y)}, {"series", series}};
 }
 
 json to_json(const Conclusion& conclusion) {

@@ -82,6 +82,9 @@ Verdict overall(const Conclusion& conclusion);
 
 /// As in a judgement ("driftless-judgement/1"). Never holds NaN or infinity.
 nlohmann::json to_json(const Conclusion& conclusion);
+nlohmann::json to_json(const Axis& axis);
+/// Without the points that are not finite.
+nlohmann::json to_json(const Chart& chart);
 
 /// How many standard errors make a violation certain. A normal variate is beyond them in 6 of 10^7
 /// cases, so a judgement of a thousand findings raises a false alarm in less than one of a

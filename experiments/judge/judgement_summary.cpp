@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "experiments/files.hpp"
+#include "experiments/json_text.hpp"
 #include "experiments/judge/judge.hpp"
 #include "experiments/page.hpp"
 #include "experiments/text_file.hpp"
@@ -43,15 +44,6 @@ std::string failures(const json& judgement) {
     }
   }
   return text.empty() ? "Nothing fails.\n" : text;
-}
-
-json rounded(const json& value) {
-  if (value.is_number_float()) return std::stod(fmt::format("{:.6g}", value.get<double>()));
-  json copy = value;
-  if (value.is_structured()) {
-    for (auto& part : copy) part = rounded(part);
-  }
-  return copy;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@ const here = dirname(fileURLToPath(import.meta.url));
 const pages = [
   {name: 'result', html: 'index.html', script: 'page.js'},
   {name: 'judgement', html: 'judgement/index.html', script: 'judgement/page.js'},
+  {name: 'papers', html: 'papers/index.html', script: 'papers/page.js'},
 ];
 const result_mark = '@RESULT@';
 const longest_literal = 16000; // well under the 65536 characters that a C++ compiler must take

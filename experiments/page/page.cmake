@@ -12,6 +12,7 @@ set(page_output "${CMAKE_CURRENT_BINARY_DIR}/page")
 set(DRIFTLESS_PAGE_TEMPLATE "${page_output}/page_template.cpp")
 add_custom_command(
   OUTPUT "${DRIFTLESS_PAGE_TEMPLATE}" "${page_output}/result.html" "${page_output}/judgement.html"
+    "${page_output}/papers.html"
   COMMAND "${NODE_EXECUTABLE}" "${page_folder}/bundle.mjs" "${page_output}"
   DEPENDS ${page_sources} "${page_folder}/bundle.mjs" "${PROJECT_SOURCE_DIR}/package.json" "${page_modules}"
   COMMENT "Bundling the pages"

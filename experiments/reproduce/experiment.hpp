@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "experiments/judge/conclusion.hpp"
+#include "experiments/statistics.hpp"
 
 /// The systems, measurements and figures of the papers, each with the paper's values beside ours.
 namespace driftless::reproduce {
@@ -50,6 +51,9 @@ struct Interval {
   double value = 0, low = 0, high = 0;
 };
 
+/// +- 1.96 standard errors.
+Interval interval_of(const Estimate& estimate);
+
 enum class Verdict {
   agrees,        ///< our interval, widened by the paper's error, holds the paper's value
   differs,       ///< it does not
@@ -69,11 +73,12 @@ struct Row {
   std::string paper_text;  ///< where the paper says it in words: "less than 1%"
   Interval ours;
   Verdict verdict = Verdict::ours_alone;
-  std::string explanation;  ///< of a difference, or what the number shows; a sentence or two
+  std::string explanation = {};  ///< of a difference, or what the number shows; a sentence or two
 };
 
-/// agrees or differs for a value with its interval beside the paper's; not resolved if ours is
-/// wider than `resolution` of the paper's value.
+/// For a value with its interval beside the paper's: differs if the two intervals have nothing in
+/// common; else not resolved if ours reaches further than `resolution` of the paper's value (of 1
+/// where that is 0) to either side, or is not finite; else agrees.
 Verdict compare(const Interval& ours, const Interval& paper, double resolution);
 
 /// Values on a rectangular grid: value(column, row) = values[row * columns + column].

@@ -1,4 +1,4 @@
-// Writes the page of a result or a judgement: write_page RESULT.json PAGE.html. The browser tests'
+// Writes the page of a result, a judgement or reproduced experiments: write_page RESULT.json PAGE.html. The browser tests'
 // way to pages of results that no study would give.
 
 #include <exception>
@@ -16,8 +16,10 @@ int main(int argument_count, char** arguments) try {
   std::ifstream input(arguments[1]);
   const auto result = nlohmann::json::parse(input);
   std::ofstream output(arguments[2], std::ios::binary);
-  const bool judgement = result.value("format", "") == "driftless-judgement/1";
-  output << (judgement ? driftless::render_judgement_page(result) : driftless::render_page(result));
+  const auto format = result.value("format", "");
+  output << (format == "driftless-judgement/1" ? driftless::render_judgement_page(result)
+             : format == "driftless-papers/1"  ? driftless::render_papers_page(result)
+                                               : driftless::render_page(result));
   output.close();
   return output ? 0 : 1;
 } catch (const std::exception& error) {

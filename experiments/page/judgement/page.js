@@ -1,11 +1,12 @@
 // The page of a judgement: verdicts of all methods, and behind each the findings.
 import {draw, settle} from '../chart.js';
 import {element, fill_select, replace} from '../dom.js';
-import {chart_spec, overlaid, shared_series, trade_chart} from './charts.js';
+import {render_provenance} from '../provenance.js';
+import {chart_spec} from '../series_chart.js';
+import {overlaid, shared_series, trade_chart} from './charts.js';
 import {
   render_comparison,
   render_findings,
-  render_provenance,
   render_tables,
   render_trade,
   render_verdicts,
@@ -125,7 +126,7 @@ function start() {
   document.title = `${title} · Driftless`;
   replace('title', `${title}, depth ${judgement.depth}`);
   render_verdicts(judgement, choose);
-  render_provenance(judgement);
+  render_provenance(judgement.provenance, {depth: judgement.depth});
   settle(() => {
     draw_trade();
     draw_examination();

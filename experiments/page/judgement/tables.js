@@ -135,10 +135,3 @@ export function render_trade(trade, scene, observable) {
   ]);
   replace('trade-place', table('trade-table', 'The front, cheapest first', head, rows));
 }
-
-export function render_provenance({provenance, depth}) {
-  const {command, ...facts} = provenance;
-  const rows = Object.entries({depth, ...facts}).map(([key, value]) => [key, String(value)]);
-  replace('provenance-place', table('provenance-table', 'How it was made', ['', ''], rows));
-  replace('command', command);
-}

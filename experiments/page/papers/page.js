@@ -1,0 +1,87 @@
+// The page of reproduced experiments: what agrees, then every experiment with its rows and pictures.
+import {draw, settle} from '../chart.js';
+import {element, replace} from '../dom.js';
+import {number} from '../format.js';
+import {render_provenance} from '../provenance.js';
+import {chart_spec} from '../series_chart.js';
+import {field_spec, longest_arrow} from './field.js';
+import {overview_table, rows_table} from './tables.js';
+
+const papers = JSON.parse(document.getElementById('result').textContent);
+const chart_id = (experiment, index) => `chart-${experiment.name}-${index}`;
+
+function picture_note({caption, field}) {
+  const longest = field ? longest_arrow(field) : 0;
+  const arrows = longest > 0 ? `The longest arrow is ${number(longest)}.` : '';
+  return [caption, arrows].filter(Boolean).join(' ');
+}
+
+function pictures_of(experiment) {
+  if (!experiment.pictures.length) return null;
+  return element(
+    'div',
+    {class: 'pictures'},
+    experiment.pictures.map((picture, index) =>
+      element(
+        'div',
+        {},
+        element('h3', {}, picture.title),
+        element(
+          'div',
+          {class: 'scroll'},
+          element('div', {
+            class: picture.field ? 'chart field' : 'chart',
+            id: chart_id(experiment, index),
+          }),
+        ),
+        element('p', {class: 'note'}, picture_note(picture)),
+      ),
+    ),
+  );
+}
+
+function remarks_of({remarks}) {
+  if (!remarks.length) return null;
+  return element(
+    'ul',
+    {class: 'remarks'},
+    remarks.map((remark) => element('li', {}, remark)),
+  );
+}
+
+function section_of(experiment) {
+  const {name, source, title, question, failure, rows} = experiment;
+  return element(
+    'section',
+    {id: name, class: 'experiment', 'aria-label': title},
+    element('p', {class: 'kind'}, `${source} · ${name}`),
+    element('h2', {}, title),
+    element('p', {}, question),
+    failure ? element('p', {class: 'failure'}, `It failed. ${failure}`) : null,
+    rows.length ? element('div', {class: 'scroll'}, rows_table(experiment)) : null,
+    pictures_of(experiment),
+    remarks_of(experiment),
+  );
+}
+
+function draw_pictures() {
+  for (const experiment of papers.experiments) {
+    experiment.pictures.forEach(({title, chart, field}, index) => {
+      const spec = chart ? chart_spec(chart) : field ? field_spec(field) : null;
+      draw(chart_id(experiment, index), spec, `${title}, ${experiment.source}`);
+    });
+  }
+}
+
+function start() {
+  const count = papers.experiments.length;
+  const title = count === 1 ? papers.experiments[0].title : `${count} experiments of the papers`;
+  document.title = `${title} · Driftless`;
+  replace('title', papers.effort === 'full' ? title : `${title}, ${papers.effort}`);
+  replace('overview-place', overview_table(papers.experiments));
+  replace('experiments-place', ...papers.experiments.map(section_of));
+  render_provenance(papers.provenance, {effort: papers.effort});
+  settle(draw_pictures);
+}
+
+start();
