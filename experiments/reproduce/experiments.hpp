@@ -3,7 +3,9 @@
 #include "experiments/reproduce/experiment.hpp"
 
 /// Every experiment, a line each: `name` is defined in a file of this folder.
-#define DRIFTLESS_EXPERIMENTS(EXPERIMENT)
+#define DRIFTLESS_EXPERIMENTS(EXPERIMENT) \
+  EXPERIMENT(marsh_coveney_entropy)       \
+  EXPERIMENT(soleymani_2020_figure_1)
 
 namespace driftless::reproduce {
 
