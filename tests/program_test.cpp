@@ -66,7 +66,7 @@ TEST_F(Program, HelpAndVersionOfEverything) {
   for (const auto* arguments :
        {"--help", "--version", "run --help", "check --help", "report --help", "recommend --help",
         "methods --help", "scenes --help", "observables --help", "schema --help", "compare --help",
-        "keep --help"}) {
+        "keep --help", "reproduce --help", "reproduce --list"}) {
     const auto outcome = call(arguments);
     EXPECT_EQ(outcome.code, 0) << arguments;
     EXPECT_FALSE(outcome.text.empty()) << arguments;
@@ -89,7 +89,7 @@ TEST_F(Program, ListsMethodsScenesObservablesAndSchemas) {
     EXPECT_NE(scenes.find(std::string("  ") + key), std::string::npos) << key;
   }
   EXPECT_NE(call("observables").text.find("internal_energy_variance"), std::string::npos);
-  for (const auto* kind : {"study", "result", "comparison"}) {
+  for (const auto* kind : {"study", "result", "comparison", "papers"}) {
     EXPECT_TRUE(json::parse(call(std::string("schema ") + kind).text).contains("$schema")) << kind;
   }
 }
@@ -97,7 +97,8 @@ TEST_F(Program, ListsMethodsScenesObservablesAndSchemas) {
 TEST_F(Program, WrongUseEndsWithTwo) {
   for (const auto* arguments :
        {"", "nonsense", "run", "schema", "schema nonsense", "run a b c",
-        "run study.json --threads 0", "recommend", "recommend --budget 1", "compare one"}) {
+        "run study.json --threads 0", "recommend", "recommend --budget 1", "compare one",
+        "reproduce", "reproduce nonsense", "reproduce all --threads 0"}) {
     EXPECT_EQ(call(arguments).code, 2) << arguments;
   }
 }
