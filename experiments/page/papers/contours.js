@@ -11,9 +11,10 @@ export function contour_levels({contours = [], values}) {
   if (!(high > low)) return [];
   const raw = (high - low) / about;
   const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map((factor) => factor * power).find((one) => one >= raw);
+  const step = [1, 2, 5, 10].map((factor) => factor * power).find((one) => one >= 0.7 * raw);
   const levels = [];
-  for (let n = Math.ceil(low / step); n * step <= high; ++n) levels.push(Number((n * step).toPrecision(12)));
+  for (let n = Math.floor(low / step) + 1; n * step < high; ++n)
+    levels.push(Number((n * step).toPrecision(12)));
   return levels;
 }
 

@@ -5,7 +5,7 @@ import {contour_levels, contour_lines} from './contours.js';
 const ink = '#1f2933';
 // Light throughout, so that lines and arrows show on it; cold to hot.
 const colours = ['#6aa5d8', '#bcd9ee', '#f7f1dc', '#f3c27c', '#dc7a4a'];
-const width = 500;
+const width = 470;
 const most_arrows = 22; // along an axis
 
 // Lengths on both axes are alike unless the picture would be a strip.
@@ -24,7 +24,8 @@ function cells_of(field) {
     const x = field.x_from + (place % field.columns) * dx;
     const y = field.y_from + Math.floor(place / field.columns) * dy;
     const text = `${number(x + dx / 2)}, ${number(y + dy / 2)}: ${number(value)}`;
-    return value === null ? [] : [{x, x2: x + dx, y, y2: y + dy, value, text}];
+    const overlap = 1.03; // no seams between cells
+    return value === null ? [] : [{x, x2: x + overlap * dx, y, y2: y + overlap * dy, value, text}];
   });
 }
 
@@ -98,7 +99,10 @@ const rules = (name, values, stroke, strokeWidth) => ({
 function colour_layer(field, levels) {
   const legend = {
     title: field.quantity,
-    gradientLength: 220,
+    orient: 'bottom',
+    type: 'gradient',
+    gradientLength: 320,
+    titleLimit: 400,
     values: levels.length > 1 ? levels : undefined,
     labelOverlap: true,
   };
@@ -107,14 +111,13 @@ function colour_layer(field, levels) {
   return {
     name: 'cells',
     data: {values: cells_of(field)},
-    mark: {type: 'rect', strokeWidth: 0.6},
+    mark: {type: 'rect', clip: true},
     encoding: {
       x: {field: 'x', type: 'quantitative'},
       y: {field: 'y', type: 'quantitative'},
       x2: {field: 'x2'},
       y2: {field: 'y2'},
       fill: {...colour, legend},
-      stroke: {...colour, legend: null}, // no seams between cells
       tooltip: {field: 'text', title: `${field.x.title}, ${field.y.title}: ${field.quantity}`},
     },
   };
