@@ -20,6 +20,7 @@
 #include "experiments/reproduce/reproduce.hpp"
 #include "experiments/result_file.hpp"
 #include "experiments/scene_keys.hpp"
+#include "experiments/simulate.hpp"
 #include "experiments/study_warnings.hpp"
 #include "integrators/modules.hpp"
 
@@ -257,6 +258,45 @@ void keep_numbers(const std::string& result, const std::string& file) {
   write_atomically(file, without_curves(read_result(result)).dump(1) + "\n");
 }
 
+void add_simulate_options(CLI::App& command, SimulateArguments& simulated) {
+  command.add_option("scene", simulated.scene, "a preset's name, or a JSON file of one scene")
+      ->required();
+  command.add_option("--method", simulated.method, "NAME or NAME:option=value,option=value")
+      ->required();
+  command.add_option("--time-step", simulated.time_step, "size of a step")->required();
+  command.add_option("--duration", simulated.duration, "simulated time")->required();
+  command.add_option("-o,--output", simulated.directory,
+                     "folder of all files that are not named (default: the scene's and the "
+                     "method's names, in driftless-results/)");
+  command.add_option("--trajectory", simulated.trajectory,
+                     "extended XYZ file, for OVITO and ASE (default: trajectory.xyz)");
+  command.add_option(
+      "--every", simulated.every,
+      "simulated time between frames (default: 100 frames, fewer of a large system)");
+  command.add_option("--fields", simulated.fields,
+                     "averages on a grid, JSON (default: fields.json)");
+  command.add_option("--bins", simulated.bins, "bins of the grid along x, y and z")
+      ->delimiter(',')
+      ->expected(3)
+      ->default_str("8,8,8");
+  command.add_option("--equilibrate", simulated.equilibrate,
+                     "simulated time before the first sample of the fields (default: 0)");
+  command.add_option("--monitor", simulated.monitor,
+                     "energies, temperatures and momentum in time, JSON (default: monitor.json)");
+  command.add_option(
+      "--sample-every", simulated.sample_every,
+      "simulated time between samples of fields and monitor (default: 1000 samples)");
+  command.add_option("--checkpoint", simulated.checkpoint,
+                     "what the run goes on from (default: checkpoint.cbor)");
+  command.add_option("--checkpoint-every", simulated.checkpoint_every,
+                     "seconds between checkpoints (default: 60)");
+  command.add_option("-t,--threads", simulated.threads, "threads (default: all)")
+      ->check(CLI::Range(1U, 4096U));
+  command.add_option("--seed", simulated.seed, "of all random numbers (default: 1)");
+  command.add_flag("-q,--quiet", simulated.quiet, "no progress");
+  command.callback([&] { fmt::print("{}", simulate(simulated)); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -338,6 +378,15 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1U, 4096U));
   judge_command->add_flag("-q,--quiet", judged.quiet, "no progress");
   judge_command->callback([&] { run_judge(judged); });
+
+  SimulateArguments simulated;
+  for (int i = 0; i < argc; ++i) {
+    simulated.command += i == 0 ? "driftless" : " " + std::string(argv[i]);
+  }
+  add_simulate_options(*app.add_subcommand("simulate",
+                                           "run one scene under one method; the same command again "
+                                           "goes on from its checkpoint"),
+                       simulated);
 
   int exit_code = 0;
   ReproduceArguments reproduced;

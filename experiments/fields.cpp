@@ -1,0 +1,204 @@
+#include "experiments/fields.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "experiments/checkpoint.hpp"
+#include "experiments/statistics.hpp"
+
+namespace driftless {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t most_blocks = 32;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+std::size_t product(const Fields::Bins& bins) { return bins[0] * bins[1] * bins[2]; }
+
+/// JSON has no numbers that are not finite.
+json finite_or_null(const std::vector<double>& values) {
+  json list = json::array();
+  for (const double value : values) list.push_back(std::isfinite(value) ? json(value) : json());
+  return list;
+}
+
+void add(const std::vector<double>& from, std::vector<double>& to) {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
+}
+
+}  // namespace
+
+Fields::Fields(const System& system, const Bins& bins)
+    : lengths_(system.box().lengths),
+      bins_(bins),
+      isothermal_(system.fluid().isothermal()),
+      boltzmann_(system.fluid().boltzmann()) {
+  for (const auto count : bins) {
+    if (count < 1 || count > most_bins) throw std::invalid_argument("too few or too many bins");
+  }
+  if (product(bins) > most_bins) throw std::invalid_argument("too many bins");
+  sums_.resize(product(bins) * channels);
+}
+
+std::size_t Fields::bin_of(const Vector& position) const {
+  std::size_t bin = 0;
+  for (int axis = 2; axis >= 0; --axis) {
+    const auto count = bins_[static_cast<std::size_t>(axis)];
+    const double share = position[axis] / lengths_[axis];
+    const auto here = static_cast<std::size_t>(share * static_cast<double>(count));
+    bin = bin * count + std::min(here, count - 1);  // rounding may reach the upper edge
+  }
+  return bin;
+}
+
+void Fields::sample(System& system, std::uint64_t) {
+  sums_.assign(sums_.size(), 0);
+  sum_particles(system);
+  sum_peculiar(system);
+  add_to_block();
+  ++samples_;
+}
+
+void Fields::sum_particles(const System& system) {
+  const State& state = system.state();
+  const Fluid& fluid = system.fluid();
+  bin_.resize(state.size());
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const std::size_t bin = bin_of(state.position[i]);
+    bin_[i] = static_cast<std::uint32_t>(bin);
+    summed(bin, particles) += 1;
+    summed(bin, mass) += fluid.mass();
+    summed(bin, momentum_x) += fluid.mass() * state.velocity[i][0];
+    summed(bin, momentum_y) += fluid.mass() * state.velocity[i][1];
+    summed(bin, momentum_z) += fluid.mass() * state.velocity[i][2];
+    if (isothermal_) continue;
+    summed(bin, inverse_temperature) += 1 / fluid.temperature(state.internal_energy[i]);
+    summed(bin, internal_energy) += state.internal_energy[i];
+  }
+}
+
+void Fields::sum_peculiar(const System& system) {
+  const State& state = system.state();
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const std::size_t bin = bin_[i];
+    const Vector momentum(summed(bin, momentum_x), summed(bin, momentum_y),
+                          summed(bin, momentum_z));
+    const Vector mean = momentum / summed(bin, mass);
+    summed(bin, peculiar) += system.fluid().mass() * (state.velocity[i] - mean).squaredNorm();
+  }
+  for (std::size_t bin = 0; bin < product(bins_); ++bin) {
+    summed(bin, freedom) = std::max(0.0, summed(bin, particles) - 1);
+  }
+}
+
+/// Blocks that are full and too many are joined by twos.
+void Fields::add_to_block() {
+  if (blocks_.empty() || filled_ == block_length_) {
+    if (blocks_.size() == most_blocks) {
+      for (std::size_t i = 0; i < most_blocks / 2; ++i) {
+        add(blocks_[2 * i + 1], blocks_[2 * i]);
+        if (i > 0) blocks_[i] = std::move(blocks_[2 * i]);
+      }
+      blocks_.resize(most_blocks / 2);
+      block_length_ *= 2;
+    }
+    blocks_.emplace_back(sums_.size(), 0.0);
+    filled_ = 0;
+  }
+  add(sums_, blocks_.back());
+  ++filled_;
+}
+
+double Fields::total(std::size_t bin, Channel channel) const {
+  if (channel == channels) return static_cast<double>(samples_);
+  double sum = 0;
+  for (const auto& block : blocks_) sum += block[bin * channels + channel];
+  return sum;
+}
+
+std::vector<Fields::Ratio> Fields::ratios() const {
+  const double bin_volume = lengths_.prod() / static_cast<double>(product(bins_));
+  std::vector<Ratio> all = {{"number_density", particles, channels, 1 / bin_volume},
+                            {"velocity_x", momentum_x, mass, 1},
+                            {"velocity_y", momentum_y, mass, 1},
+                            {"velocity_z", momentum_z, mass, 1}};
+  if (boltzmann_ > 0) {
+    all.push_back({"kinetic_temperature", peculiar, freedom, 1 / (3 * boltzmann_)});
+  }
+  if (!isothermal_) {
+    all.push_back({"internal_temperature", particles, inverse_temperature, 1});
+    all.push_back({"internal_energy", internal_energy, particles, 1});
+  }
+  return all;
+}
+
+double Fields::error(const Ratio& ratio, std::size_t bin) const {
+  const std::size_t whole = blocks_.size() - (filled_ < block_length_ ? 1 : 0);
+  if (whole < 2) return infinity;
+  const auto length = static_cast<double>(block_length_);
+  Eigen::MatrixXd means(whole, 2);
+  for (std::size_t block = 0; block < whole; ++block) {
+    const double* sums = blocks_[block].data() + bin * channels;
+    means.row(static_cast<Eigen::Index>(block)) << sums[ratio.numerator] / length,
+        ratio.denominator == channels ? 1.0 : sums[ratio.denominator] / length;
+  }
+  if (!(means.col(1).sum() > 0)) return infinity;
+  return estimate({means}, [&](const Eigen::VectorXd& m) { return ratio.factor * m[0] / m[1]; })
+      .error;
+}
+
+Fields::Quantity Fields::quantity(const Ratio& ratio) const {
+  Quantity result{ratio.name, {}, {}};
+  for (std::size_t bin = 0; bin < product(bins_); ++bin) {
+    const double below = total(bin, ratio.denominator);
+    const bool known = below > 0;
+    result.values.push_back(known ? ratio.factor * total(bin, ratio.numerator) / below : nothing);
+    result.errors.push_back(known ? error(ratio, bin) : infinity);
+  }
+  return result;
+}
+
+std::vector<Fields::Quantity> Fields::quantities() const {
+  std::vector<Quantity> all;
+  for (const auto& ratio : ratios()) all.push_back(quantity(ratio));
+  return all;
+}
+
+json Fields::to_json() const {
+  json axes = json::array();
+  for (int axis = 0; axis < 3; ++axis) {
+    axes.push_back({{"axis", std::string(1, static_cast<char>('x' + axis))},
+                    {"from", 0},
+                    {"to", lengths_[axis]},
+                    {"bins", bins_[static_cast<std::size_t>(axis)]}});
+  }
+  json fields = json::object();
+  for (const auto& field : quantities()) {
+    fields[field.name] = {{"values", finite_or_null(field.values)},
+                          {"errors", finite_or_null(field.errors)}};
+  }
+  return {{"axes", axes}, {"bins", bins_}, {"samples", samples_}, {"quantities", fields}};
+}
+
+json Fields::settings() const { return {{"bins", bins_}}; }
+
+json Fields::save() {
+  json blocks = json::array();
+  for (const auto& block : blocks_) blocks.push_back(to_bytes(block));
+  return {{"samples", samples_},
+          {"block_length", block_length_},
+          {"filled", filled_},
+          {"blocks", blocks}};
+}
+
+void Fields::load(const json& saved) {
+  samples_ = saved.at("samples").get<std::uint64_t>();
+  block_length_ = saved.at("block_length").get<std::uint64_t>();
+  filled_ = saved.at("filled").get<std::uint64_t>();
+  blocks_.clear();
+  for (const auto& block : saved.at("blocks")) blocks_.push_back(from_bytes<double>(block));
+}
+
+}  // namespace driftless
