@@ -55,6 +55,15 @@ has_certificates() {
 
 has_openmp() { "$compiler" -fopenmp -fsyntax-only -x c++ -include omp.h /dev/null 2>/dev/null; }
 
+# Debian's ASE belongs to Debian's Python, which need not be the first in the path.
+has_ase() {
+  local python
+  for python in python3 /usr/bin/python3; do
+    if "$python" -c 'import ase' 2>/dev/null; then return 0; fi
+  done
+  return 1
+}
+
 # need PACKAGE TEST...: notes the package if the test fails.
 need() {
   local package="$1"
@@ -92,6 +101,7 @@ need_to_test() {
   need libvalijson-dev has_header valijson/validator.hpp
   need libbenchmark-dev has_header benchmark/benchmark.h
   need chromium has_command chromium
+  need python3-ase has_ase
 }
 
 need_to_check() {

@@ -28,7 +28,7 @@ fresh_sandbox() {
   for name in bash cat chmod cp dirname env flock ln mkdir mktemp mv nproc readlink rm sha256sum tail true; do
     ln -s "$(type -P "$name")" "$sandbox/bin/$name"
   done
-  for name in c++ ninja git node chromium; do stand_in "$name" <<<'exit 0'; done
+  for name in c++ ninja git node chromium python3; do stand_in "$name" <<<'exit 0'; done
   stand_in id <<<'echo "${FAKE_USER:-0}"'
   stand_in cmake <<'BODY'
 echo "cmake $*" >>"$SANDBOX/calls"

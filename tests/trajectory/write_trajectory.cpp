@@ -1,0 +1,70 @@
+// write_trajectory FOLDER: trajectories of short runs, and beside each what the system was, in
+// JSON with all digits.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "experiments/files.hpp"
+#include "experiments/judge/small_system.hpp"
+#include "experiments/trajectory.hpp"
+
+namespace {
+
+using namespace driftless;
+using nlohmann::json;
+
+constexpr double step_size = 0.01;
+
+json to_json(const Vector& vector) { return {vector[0], vector[1], vector[2]}; }
+
+/// Writes down what a trajectory should hold.
+class Witness : public Observer {
+ public:
+  void sample(System& system, std::uint64_t step) override {
+    const State& state = system.state();
+    json frame = {{"step", step},
+                  {"time", static_cast<double>(step) * step_size},
+                  {"lengths", to_json(system.box().lengths)},
+                  {"id", state.id}};
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      frame["position"].push_back(to_json(state.position[i]));
+      frame["velocity"].push_back(to_json(state.velocity[i]));
+      frame["mass"].push_back(system.fluid().mass());
+      frame["internal_energy"].push_back(state.internal_energy[i]);
+      frame["temperature"].push_back(system.fluid().temperature(state.internal_energy[i]));
+    }
+    frames_.push_back(frame);
+  }
+  json save() override { return frames_; }
+  void load(const json& saved) override { frames_ = saved; }
+
+ private:
+  json frames_ = json::array();
+};
+
+void write(const std::filesystem::path& folder, const std::string& name, bool isothermal) {
+  judge::Terms terms;
+  terms.potential = true;
+  terms.isothermal = isothermal;
+  const auto fluid = judge::small_fluid(terms, 0.5);
+  State start = judge::small_state(fluid);
+  // Ids that are no places.
+  for (auto& id : start.id) id = 3 * (26 - id) + 5;
+  System system(Fluid(fluid), Box{Vector(3, 3.25, 4)}, start, Noise(7, 0));
+  const auto integrator = find_method("shardlow-s1")->make({});
+  Trajectory trajectory(folder / (name + ".xyz"), step_size);
+  Witness witness;
+  LongRunPlan plan;
+  plan.time_step = step_size;
+  plan.last = 20;
+  long_run(system, *integrator, plan,
+           {{"trajectory", &trajectory, 4, 0}, {"witness", &witness, 4, 0}}, {}, 1);
+  write_atomically(folder / (name + ".json"), witness.save().dump());
+}
+
+}  // namespace
+
+int main(int, char** argv) {
+  write(argv[1], "energies", false);
+  write(argv[1], "isothermal", true);
+}
