@@ -280,5 +280,31 @@ TEST(Monitor, IsThinnedToRowsEquallyFarApart) {
   EXPECT_GE(times.back() + times[1], static_cast<double>(samples));
 }
 
+/// Whether samples 0 to 9999 give the same when an observer is taken up from what it saved after
+/// some of them.
+template <class Make>
+void expect_the_same_after_a_restart(const Make& make, System& system) {
+  auto whole = make();
+  for (std::uint64_t step = 0; step < 10'000; ++step) whole.sample(system, step);
+  for (const std::uint64_t stop : {1, 31, 33, 5000, 9999}) {
+    auto before = make(), after = make();
+    for (std::uint64_t step = 0; step < stop; ++step) before.sample(system, step);
+    after.load(json::from_cbor(json::to_cbor(before.save())));
+    for (std::uint64_t step = stop; step < 10'000; ++step) after.sample(system, step);
+    EXPECT_EQ(after.save(), whole.save()) << stop;
+    EXPECT_EQ(after.to_json(), whole.to_json()) << stop;
+  }
+}
+
+TEST(Fields, GoOnFromWhatTheySaved) {
+  System system = system_of(five());
+  expect_the_same_after_a_restart([&] { return Fields(system, {2, 1, 2}); }, system);
+}
+
+TEST(Monitor, GoesOnFromWhatItSaved) {
+  System system = system_of(five());
+  expect_the_same_after_a_restart([&] { return Monitor(system, 1, 12); }, system);
+}
+
 }  // namespace
 }  // namespace driftless::testing

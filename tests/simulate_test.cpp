@@ -190,14 +190,14 @@ TEST_F(Simulate, FaultsAreOneSentenceAndWriteNothing) {
   const std::string times = scene_ + " --method trotter" + output;
   const std::vector<std::pair<std::string, std::string>> faults = {
       {"soft-fluit" + rest,
-       "SCENE: \"soft-fluit\" is neither a preset nor a file; did you mean \"soft-fluid\"?"},
+       "SCENE: is \"soft-fluit\", neither a preset nor a file; did you mean \"soft-fluid\"?"},
       {scene_ + " --method trotte --time-step 0.01 --duration 2" + output,
        "did you mean \"trotter\"?"},
       {scene_ + " --method trotter:no=1 --time-step 0.01 --duration 2" + output, "no"},
       {scene_ + " --method all --time-step 0.01 --duration 2" + output,
        "--method: is \"all\"; allowed is one method"},
       {"groot-warren-1997 --method metropolized-splitting --time-step 0.01 --duration 2" + output,
-       "--method: metropolized-splitting cannot run this scene: "},
+       "is \"metropolized-splitting\", which cannot run this scene: "},
       {times + " --time-step -1 --duration 2", "--time-step: is -1"},
       {times + " --time-step 0.03 --duration 2",
        "--duration: is 2, no whole number of time steps of 0.03; allowed is for example 2.01"},
