@@ -219,6 +219,19 @@ TEST_F(LongRun, IsTheSameForAnyNumberOfThreadsBeforeAndAfterTheRestart) {
   EXPECT_TRUE(same(program(setting, true), whole));
 }
 
+TEST_F(LongRun, IsTheSameWithoutObserversAndCheckpoints) {
+  for (const auto* name : {"averaged-drift", "velocity-verlet", "shardlow-aboba", "trotter"}) {
+    start_anew();
+    Setting setting = setting_for(*find_method(name));
+    setting.checkpoint_every = 0;
+    const auto observed = program(setting);
+    System system(Fluid(setting.fluid), small_box(), small_state(setting.fluid), Noise(7, 0));
+    const auto integrator = setting.method->make({});
+    run(*integrator, system, step_size, 1, last_step + 1);
+    EXPECT_TRUE(same_bits(system.state(), observed.state)) << name;
+  }
+}
+
 TEST_F(LongRun, CutsTheTrajectoryBackToTheCheckpoint) {
   Setting setting = setting_for(*find_method("trotter"));
   const auto whole = program(setting);
