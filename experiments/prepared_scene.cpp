@@ -33,11 +33,7 @@ double centre_of_mass_energy(const Scene& scene) {
 }  // namespace
 
 PreparedScene::PreparedScene(const Scene& scene, std::uint64_t seed, unsigned replicas)
-    : scene_(scene),
-      fluid_(scene.fluid),
-      box_(make_box(fluid_, scene.layout, scene.particles, scene.density, scene.pair_distance)),
-      seed_(seed),
-      replicas_(replicas) {
+    : scene_(scene), fluid_(scene.fluid), box_(scene_box(scene)), seed_(seed), replicas_(replicas) {
   find_law();
   const bool drawn = starts_in_law(scene_);
   if (fluid_.isothermal()) {
@@ -60,7 +56,8 @@ double PreparedScene::thermal_kinetic_energy() const {
 }
 
 void PreparedScene::find_law() {
-  if (!fluid_.fluctuates()) return;
+  // Walls take momentum and heat, and species share energies in other ways.
+  if (!fluid_.fluctuates() || box_.is_bounded() || fluid_.species() > 1) return;
   auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
   // A pair at a fixed distance, or two particles, keep u_i - u_j without conduction; a solid's
   // friction, in few fixed directions, keeps combinations of momenta; without friction nothing ties
@@ -116,13 +113,16 @@ void PreparedScene::reference_from_law() {
   }
 }
 
+State PreparedScene::on_lattice(const Noise& numbers) const {
+  State state = place(box_, scene_.layout, Placement::lattice, scene_.particles,
+                      scene_.pair_distance, numbers);
+  state.species = scene_species(scene_);
+  return state;
+}
+
 void PreparedScene::prepare_with_repulsion() {
   const auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
-  const auto placed = [&](const Noise& numbers) {
-    return place(box_, scene_.layout, Placement::lattice, scene_.particles, scene_.pair_distance,
-                 numbers);
-  };
-  ConfigurationChain pilot(fluid_, box_, placed({pilot_seed, 0}), {pilot_seed, 0});
+  ConfigurationChain pilot(fluid_, box_, on_lattice({pilot_seed, 0}), {pilot_seed, 0});
   for (int path = 0; path < relaxation_paths; ++path) pilot.relax();
   double potential = 0;
   for (int path = 0; path < pilot_burn_in + pilot_paths; ++path) {
@@ -173,10 +173,7 @@ void PreparedScene::prepare_isothermal() {
 
 void PreparedScene::sample_canonical_configurations() {
   const Noise numbers(seed_, ~std::uint64_t{0});  // a replica beyond any study's
-  ConfigurationChain chain(fluid_, box_,
-                           place(box_, scene_.layout, Placement::lattice, scene_.particles,
-                                 scene_.pair_distance, numbers),
-                           numbers);
+  ConfigurationChain chain(fluid_, box_, on_lattice(numbers), numbers);
   for (int path = 0; path < relaxation_paths; ++path) chain.relax();
   Eigen::MatrixXd potential(chain_paths, 1), pressure(chain_paths, 1);
   const int apart = std::max(1, chain_paths / static_cast<int>(std::max(1U, replicas_)));
@@ -281,8 +278,27 @@ System PreparedScene::start(unsigned replica) const {
       state.velocity[i] = scene_.initial_velocities[i];
     }
   }
+  if (state.species.empty()) state.species = scene_species(scene_);
+  scale_to_species(state);
   boost_frame(scene_.frame_velocity, state);
   return System(fluid_, box_, std::move(state), numbers, scene_.frozen);
+}
+
+void PreparedScene::scale_to_species(State& state) const {
+  if (state.species.empty()) return;
+  Vector momentum = Vector::Zero();
+  double mass = 0;
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const auto species = state.species_of(i);
+    state.velocity[i] *= std::sqrt(fluid_.mass() / fluid_.mass(species));
+    const double theta = fluid_.temperature(state.internal_energy[i]);
+    if (!fluid_.isothermal()) {
+      state.internal_energy[i] = fluid_.equation_of_state(species).internal_energy(theta);
+    }
+    momentum += fluid_.mass(species) * state.velocity[i];
+    mass += fluid_.mass(species);
+  }
+  for (auto& velocity : state.velocity) velocity -= momentum / mass;
 }
 
 std::optional<Reference> PreparedScene::reference(std::string_view observable) const {

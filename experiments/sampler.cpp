@@ -16,6 +16,15 @@ std::vector<Block> empty_blocks(unsigned replica, std::size_t bins) {
   return blocks;
 }
 
+/// What fluid and surroundings have together is what is kept.
+double energy_with_surroundings(System& system) {
+  return system.total_energy() + total(system.motion().surroundings).energy;
+}
+
+Vector momentum_with_surroundings(const System& system) {
+  return system.momentum() + total(system.motion().surroundings).momentum;
+}
+
 // The radial distribution needs no more snapshots than this from a replica.
 constexpr std::size_t distance_snapshots = 64;
 
@@ -30,8 +39,8 @@ Sampler::Sampler(const PreparedScene& prepared, System& system, unsigned replica
                  std::size_t samples)
     : prepared_(prepared),
       distances_(prepared.box(), distance_range(prepared), system.size()),
-      first_energy_(system.total_energy()),
-      first_momentum_(system.momentum()),
+      first_energy_(energy_with_surroundings(system)),
+      first_momentum_(momentum_with_surroundings(system)),
       island_size_(prepared.island_size()) {
   const auto exact = prepared.reference("internal_energy_mean");
   mean_energy_ = exact ? exact->value : 0;
@@ -52,13 +61,19 @@ Sampler::Sampler(const PreparedScene& prepared, System& system, unsigned replica
 
 Sampler::Island Sampler::island(const State& state, std::size_t first, std::size_t last) const {
   Island result{Vector::Zero(), 0, 0};
-  for (std::size_t i = first; i < last; ++i) result.velocity += state.velocity[i];
-  result.velocity /= static_cast<double>(last - first);
+  const Fluid& fluid = prepared_.fluid();
+  double mass = 0;
   for (std::size_t i = first; i < last; ++i) {
-    result.kinetic += (state.velocity[i] - result.velocity).squaredNorm();
+    const double of_particle = fluid.mass(state.species_of(i));
+    result.velocity += of_particle * state.velocity[i];
+    mass += of_particle;
+  }
+  result.velocity /= mass;
+  for (std::size_t i = first; i < last; ++i) {
+    const double of_particle = fluid.mass(state.species_of(i));
+    result.kinetic += 0.5 * of_particle * (state.velocity[i] - result.velocity).squaredNorm();
     result.internal += state.internal_energy[i];
   }
-  result.kinetic *= 0.5 * prepared_.fluid().mass();
   return result;
 }
 
@@ -82,7 +97,8 @@ void Sampler::take_island(const State& state, std::size_t first, std::size_t las
   for (std::size_t i = first; i < last; ++i) {
     if (!fluid.isothermal()) {
       const double u = state.internal_energy[i] * scale, excess = u - mean_energy_;
-      sums[Primary::inverse_temperature] += 1 / fluid.temperature(u);
+      sums[Primary::inverse_temperature] +=
+          1 / fluid.equation_of_state(state.species_of(i)).temperature(u);
       sums[Primary::energy_1] += excess;
       sums[Primary::energy_2] += excess * excess;
       sums[Primary::energy_3] += excess * excess * excess;
@@ -137,10 +153,10 @@ void Sampler::take(System& system, double time) {
   const double unit = prepared_.energy_unit();
   record_.energy.times[static_cast<Eigen::Index>(taken_)] = time;
   record_.energy.energies[static_cast<Eigen::Index>(taken_)] =
-      (system.total_energy() - first_energy_) / (particles * unit);
-  record_.momentum_error =
-      std::max(record_.momentum_error,
-               (system.momentum() - first_momentum_).norm() / particles / std::sqrt(f.mass * unit));
+      (energy_with_surroundings(system) - first_energy_) / (particles * unit);
+  record_.momentum_error = std::max(record_.momentum_error,
+                                    (momentum_with_surroundings(system) - first_momentum_).norm() /
+                                        particles / std::sqrt(f.mass * unit));
   take_distances(state);
   ++taken_;
 }

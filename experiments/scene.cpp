@@ -186,6 +186,35 @@ const Preset* find_preset(std::string_view name) {
   return found == all.end() ? nullptr : &*found;
 }
 
+Box scene_box(const Scene& scene) {
+  Box box = make_box(Fluid(scene.fluid), scene.layout, scene.particles, scene.density,
+                     scene.pair_distance);
+  if (scene.layout == Layout::fluid) {
+    // A cube keeps its side to the last bit.
+    const double unit = scene.sides == Vector::Ones() ? 1 : std::cbrt(scene.sides.prod());
+    box.lengths = box.lengths.cwiseProduct(scene.sides / unit);
+  }
+  box.walls = scene.walls;
+  box.gravity = scene.gravity;
+  return box;
+}
+
+std::vector<std::uint8_t> scene_species(const Scene& scene) {
+  std::vector<std::uint8_t> species;
+  if (scene.further_shares.empty()) return species;
+  for (std::size_t i = 0; i < scene.particles; ++i) {
+    // Multiples of the golden ratio are spread evenly over (0, 1).
+    double place = std::fmod((static_cast<double>(i) + 0.5) * std::numbers::phi, 1.0);
+    std::uint8_t found = 0;
+    for (std::size_t n = 0; n < scene.further_shares.size() && found == 0; ++n) {
+      if (place < scene.further_shares[n]) found = static_cast<std::uint8_t>(n + 1);
+      place -= scene.further_shares[n];
+    }
+    species.push_back(found);
+  }
+  return species;
+}
+
 double kinetic_relaxation_time(const Scene& scene) {
   const double rate = kinetic_relaxation_rate(scene);
   return rate > 0 ? 1 / rate : std::numeric_limits<double>::infinity();

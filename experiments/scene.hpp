@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,7 +22,12 @@ struct Scene {
   FluidParameters fluid;
   Layout layout = Layout::fluid;
   std::size_t particles = 1000;
-  double density = 1;  ///< number density; unused by `pairs`
+  double density = 1;             ///< number density; unused by `pairs`
+  Vector sides = Vector::Ones();  ///< of the box, relative to each other
+  std::array<std::optional<Wall>, 6> walls = {};
+  Vector gravity = Vector::Zero();
+  /// Share of the particles that each species beside the first has.
+  std::vector<double> further_shares = {};
   bool frozen = false;
   double pair_distance = 0.5;  ///< `pairs` alone
   Vector frame_velocity = Vector::Zero();
@@ -31,6 +37,11 @@ struct Scene {
   double initial_velocity_spread = 0;      ///< per component, for `given`
   std::vector<Vector> initial_velocities;  ///< one per particle, for `given`; overrides the spread
 };
+
+/// The box of the scene: its volume is that of the density.
+Box scene_box(const Scene& scene);
+/// The species of every particle: spread evenly over the ids; empty if there is one alone.
+std::vector<std::uint8_t> scene_species(const Scene& scene);
 
 /// Whether every replica starts from the exact law.
 inline bool starts_in_law(const Scene& scene) {

@@ -8,33 +8,65 @@
 namespace driftless {
 namespace {
 
-bool fits(const Fluid& fluid, std::size_t particles, double density) {
-  const Box box = make_box(fluid, Layout::fluid, particles, density, 0);
-  return !(box.lengths.minCoeff() < 2 * fluid.range());
+/// The box's shortest side; a wall's images are a range away.
+double shortest_side(const Scene& scene, const Fluid& fluid) {
+  const Box box = scene_box(scene);
+  Vector lengths = box.lengths;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.is_walled(axis)) lengths[axis] += fluid.range();
+  }
+  return lengths.minCoeff();
 }
 
-std::size_t fewest_that_fit(const Fluid& fluid, double density) {
-  const double estimate = density * std::pow(2 * fluid.range(), 3);
-  auto particles = static_cast<std::size_t>(std::max(2.0, std::floor(estimate)));
-  while (!fits(fluid, particles, density)) ++particles;
-  return particles;
+std::size_t fewest_that_fit(Scene scene, const Fluid& fluid) {
+  const double too_short = 2 * fluid.range() / scene_box(scene).lengths.minCoeff();
+  const double estimate = static_cast<double>(scene.particles) * std::pow(too_short, 3);
+  scene.particles = static_cast<std::size_t>(std::max(2.0, std::floor(estimate)));
+  while (shortest_side(scene, fluid) < 2 * fluid.range()) ++scene.particles;
+  return scene.particles;
 }
 
 /// A particle must not meet a second image of another one.
 void check_box(const Scene& scene, const Fluid& fluid, const Location& location) {
-  if (fits(fluid, scene.particles, scene.density)) return;
-  const Box box = make_box(fluid, scene.layout, scene.particles, scene.density, 0);
-  const double needed = scene.density * std::pow(2 * fluid.range(), 3);
+  const double side = shortest_side(scene, fluid);
+  if (!(side < 2 * fluid.range())) return;
+  const double needed =
+      static_cast<double>(scene.particles) * std::pow(2 * fluid.range() / side, 3);
   const std::string allowed =
       needed < 1e7
-          ? fmt::format("at least {} particles at density {}",
-                        fewest_that_fit(fluid, scene.density), describe(scene.density))
+          ? fmt::format("at least {} particles at density {}", fewest_that_fit(scene, fluid),
+                        describe(scene.density))
           : fmt::format("a lower density than {} or a shorter range", describe(scene.density));
   location.member("particles")
       .refuse(fmt::format("is {}, which makes a box of {}, shorter than twice the range {}; "
                           "allowed is {}",
-                          scene.particles, describe(box.lengths.minCoeff()),
-                          describe(fluid.range()), allowed));
+                          scene.particles, describe(side), describe(fluid.range()), allowed));
+}
+
+void check_surroundings(const Scene& scene, const Fluid& fluid, const Location& location) {
+  if (!(scene.sides.minCoeff() > 0)) {
+    location.member("sides").refuse(
+        "has a side that is not above 0; allowed are three numbers > 0");
+  }
+  for (std::size_t face = 0; face < scene.walls.size(); ++face) {
+    if (scene.walls[face].has_value() == scene.walls[face ^ 1].has_value()) continue;
+    location.member("walls").refuse(
+        "has a wall at one side of the box alone; allowed are walls at both sides of an axis, such "
+        "as x_lower and x_upper");
+  }
+  try {
+    (void)fluid.within(scene_box(scene));
+  } catch (const std::invalid_argument& error) {
+    location.member("walls").refuse(std::string("do not fit the scene: ") + error.what());
+  }
+  double shares = 0;
+  for (const double share : scene.further_shares) shares += share;
+  if (!(shares < 1)) {
+    location.member("species").refuse(
+        fmt::format("has shares that add up to {}; allowed is below 1, the rest is the first "
+                    "species",
+                    describe(shares)));
+  }
 }
 
 void check_pairs(const Scene& scene, const Fluid& fluid, const Location& location) {
@@ -119,6 +151,7 @@ void check_scene(const Scene& scene, const Location& location) try {
                             describe(scene.fluid.repulsion)));
   }
   check_bath(fluid, location);
+  check_surroundings(scene, fluid, location);
   if (scene.layout == Layout::pairs) {
     check_pairs(scene, fluid, location);
   } else {

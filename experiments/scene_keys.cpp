@@ -15,6 +15,128 @@ using nlohmann::json;
 
 json to_list(const Vector& v) { return {v[0], v[1], v[2]}; }
 
+constexpr std::array<const char*, 6> wall_names = {"x_lower", "x_upper", "y_lower",
+                                                   "y_upper", "z_lower", "z_upper"};
+
+const std::vector<std::pair<const char*, double Wall::*>>& wall_numbers() {
+  static const std::vector<std::pair<const char*, double Wall::*>> numbers = {
+      {"repulsion", &Wall::repulsion},   {"repulsion_range", &Wall::repulsion_range},
+      {"friction", &Wall::friction},     {"friction_range", &Wall::friction_range},
+      {"conduction", &Wall::conduction}, {"heat_range", &Wall::heat_range}};
+  return numbers;
+}
+
+json to_json(const std::optional<Wall>& wall) {
+  if (!wall) return nullptr;
+  json object = json::object();
+  if (wall->temperature) object["temperature"] = *wall->temperature;
+  for (const auto& [name, member] : wall_numbers()) object[name] = *wall.*member;
+  return object;
+}
+
+Wall to_wall(const json& object) {
+  Wall wall;
+  if (object.contains("temperature")) wall.temperature = object["temperature"].get<double>();
+  for (const auto& [name, member] : wall_numbers()) {
+    if (object.contains(name)) wall.*member = object[name].get<double>();
+  }
+  return wall;
+}
+
+ValueRule wall_rule() {
+  const auto number = ValueRule::not_negative(), range = ValueRule::positive();
+  return ValueRule::object(
+      "a wall",
+      {{"temperature", range, false, "of a reservoir; without it the wall is adiabatic"},
+       {"repulsion", number, false, "largest repulsive force"},
+       {"repulsion_range", range, false, "distance at which the repulsion ends"},
+       {"friction", number, false, "normal friction coefficient zeta_0 of a reservoir"},
+       {"friction_range", range, false, "distance at which the friction ends"},
+       {"conduction", number, false, "L_0 or lambda_0 of a reservoir, as the fluid's heat_form"},
+       {"heat_range", range, false, "distance at which the conduction ends"}});
+}
+
+ValueRule walls_rule() {
+  std::vector<Field> faces;
+  for (const char* name : wall_names) {
+    faces.push_back({name, wall_rule(), false, "wall at this side of the box, in pairs"});
+  }
+  return ValueRule::object("walls", faces);
+}
+
+json walls_of(const Scene& scene) {
+  json object = json::object();
+  for (std::size_t n = 0; n < wall_names.size(); ++n) {
+    if (scene.walls[n]) object[wall_names[n]] = to_json(scene.walls[n]);
+  }
+  return object;
+}
+
+void set_walls(Scene& scene, const json& object) {
+  for (std::size_t n = 0; n < wall_names.size(); ++n) {
+    scene.walls[n].reset();
+    if (object.contains(wall_names[n])) scene.walls[n] = to_wall(object[wall_names[n]]);
+  }
+}
+
+json species_of(const Scene& scene) {
+  json list = json::array();
+  for (std::size_t n = 0; n < scene.further_shares.size(); ++n) {
+    const auto& species = scene.fluid.further_species[n];
+    list.push_back({{"share", scene.further_shares[n]},
+                    {"mass", species.mass},
+                    {"heat_capacity", species.heat_capacity / scene.fluid.heat_capacity}});
+  }
+  return list;
+}
+
+void set_species(Scene& scene, const json& list) {
+  scene.further_shares.clear();
+  scene.fluid.further_species.clear();
+  for (const auto& object : list) {
+    scene.further_shares.push_back(object["share"].get<double>());
+    SpeciesParameters species{scene.fluid.mass, scene.fluid.heat_capacity};
+    if (object.contains("mass")) species.mass = object["mass"].get<double>();
+    if (object.contains("heat_capacity")) {
+      species.heat_capacity = object["heat_capacity"].get<double>() * scene.fluid.heat_capacity;
+    }
+    scene.fluid.further_species.push_back(species);
+  }
+}
+
+const std::vector<std::pair<const char*, std::optional<double> PairParameters::*>>&
+pair_coefficients() {
+  static const std::vector<std::pair<const char*, std::optional<double> PairParameters::*>> all = {
+      {"repulsion", &PairParameters::repulsion},
+      {"friction", &PairParameters::friction},
+      {"conduction", &PairParameters::conduction}};
+  return all;
+}
+
+json species_pairs_of(const Scene& scene) {
+  json list = json::array();
+  for (const auto& pair : scene.fluid.pairs) {
+    json object = {{"first", pair.a}, {"second", pair.b}};
+    for (const auto& [name, member] : pair_coefficients()) {
+      if (pair.*member) object[name] = *(pair.*member);
+    }
+    list.push_back(object);
+  }
+  return list;
+}
+
+void set_species_pairs(Scene& scene, const json& list) {
+  scene.fluid.pairs.clear();
+  for (const auto& object : list) {
+    PairParameters pair{static_cast<unsigned>(to_integer(object["first"])),
+                        static_cast<unsigned>(to_integer(object["second"]))};
+    for (const auto& [name, member] : pair_coefficients()) {
+      if (object.contains(name)) pair.*member = object[name].get<double>();
+    }
+    scene.fluid.pairs.push_back(pair);
+  }
+}
+
 Vector to_vector(const json& list) {
   return {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()};
 }
@@ -96,6 +218,9 @@ std::string_view of_placed_fluids(const Scene& scene) {
   const bool equilibrium =
       scene.fluid.has_repulsion() && scene.fluid.boltzmann > 0 && starts_in_law(scene);
   return equilibrium ? "a fluid with repulsion starts from its equilibrium" : of_fluids(scene);
+}
+std::string_view of_species(const Scene& scene) {
+  return scene.fluid.further_species.empty() ? "there is one species alone" : "";
 }
 std::string_view of_pairs(const Scene& scene) {
   return scene.layout == Layout::pairs ? "" : "only isolated pairs have a distance";
@@ -188,6 +313,40 @@ std::vector<SceneKey> keys_of_the_system() {
   };
 }
 
+std::vector<SceneKey> keys_of_the_surroundings() {
+  return {
+      {"sides", ValueRule::vector(), "sides [x, y, z] of the box, relative to each other",
+       [](const Scene& scene) { return to_list(scene.sides); },
+       [](Scene& scene, const json& value) { scene.sides = to_vector(value); }, of_fluids},
+      {"walls", walls_rule(), "walls of the box; periodic where there are none", walls_of,
+       set_walls, of_fluids},
+      {"gravity", ValueRule::vector(), "acceleration [x, y, z], along one axis that has walls",
+       [](const Scene& scene) { return to_list(scene.gravity); },
+       [](Scene& scene, const json& value) { scene.gravity = to_vector(value); }, of_fluids},
+  };
+}
+
+std::vector<SceneKey> keys_of_the_species() {
+  return {
+      {"species",
+       ValueRule::objects("a species",
+                          {{"share", ValueRule::positive(), true, "of all particles, below 1"},
+                           {"mass", ValueRule::positive(), false, "mass m of a particle"},
+                           {"heat_capacity", ValueRule::positive(), false,
+                            "heat capacity in units of the first species'"}}),
+       "species beside the first, 0, numbered from 1", species_of, set_species, of_fluids},
+      {"species_pairs",
+       ValueRule::objects("a pair of species",
+                          {{"first", ValueRule::integer(0, 255), true, "number of a species"},
+                           {"second", ValueRule::integer(0, 255), true, "number of a species"},
+                           {"repulsion", ValueRule::not_negative(), false, "of such pairs"},
+                           {"friction", ValueRule::not_negative(), false, "of such pairs"},
+                           {"conduction", ValueRule::not_negative(), false, "of such pairs"}}),
+       "coefficients of pairs of species where they are not the fluid's", species_pairs_of,
+       set_species_pairs, of_species},
+  };
+}
+
 std::vector<SceneKey> keys_of_the_laws() {
   return {
       plain<&FluidParameters::repulsion>("repulsion", ValueRule::not_negative(),
@@ -274,7 +433,8 @@ std::vector<SceneKey> keys_of_the_start() {
 const std::vector<SceneKey>& scene_keys() {
   static const std::vector<SceneKey> keys = [] {
     std::vector<SceneKey> all = keys_of_the_system();
-    for (auto group : {keys_of_the_laws(), keys_of_the_start()}) {
+    for (auto group : {keys_of_the_surroundings(), keys_of_the_species(), keys_of_the_laws(),
+                       keys_of_the_start()}) {
       all.insert(all.end(), group.begin(), group.end());
     }
     return all;

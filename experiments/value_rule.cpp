@@ -63,6 +63,19 @@ ValueRule ValueRule::word(std::vector<std::string> words) {
   return rule;
 }
 
+ValueRule ValueRule::object(std::string owner, std::vector<Field> fields) {
+  ValueRule rule(Kind::object);
+  rule.owner_ = std::move(owner);
+  rule.fields_ = std::make_shared<const std::vector<Field>>(std::move(fields));
+  return rule;
+}
+
+ValueRule ValueRule::objects(std::string owner, std::vector<Field> fields) {
+  ValueRule rule = object(std::move(owner), std::move(fields));
+  rule.kind_ = Kind::objects;
+  return rule;
+}
+
 bool ValueRule::holds(const json& value) const {
   switch (kind_) {
     case Kind::number:
@@ -84,12 +97,23 @@ bool ValueRule::holds(const json& value) const {
       return is_vector(value);
     case Kind::vectors:
       return value.is_array() && std::all_of(value.begin(), value.end(), is_vector);
+    case Kind::object:
+      return value.is_object();
+    case Kind::objects:
+      return value.is_array() && std::all_of(value.begin(), value.end(),
+                                             [](const json& one) { return one.is_object(); });
   }
   return false;
 }
 
 void ValueRule::check(const json& value, const Location& location) const {
-  if (holds(value)) return;
+  if (holds(value)) {
+    if (kind_ == Kind::object) check_fields(value, location, owner_, *fields_);
+    for (std::size_t i = 0; kind_ == Kind::objects && i < value.size(); ++i) {
+      check_fields(value[i], location.element(i), owner_, *fields_);
+    }
+    return;
+  }
   if (kind_ == Kind::vector && value.is_array() && value.size() == 3) {
     for (std::size_t i = 0; i < 3; ++i) number().check(value[i], location.element(i));
   }
@@ -124,8 +148,18 @@ std::string ValueRule::allowed() const {
       return "a list of three numbers [x, y, z]";
     case Kind::vectors:
       return "a list of [x, y, z]";
+    case Kind::object:
+      return "an object with " + keys();
+    case Kind::objects:
+      return "a list of objects with " + keys();
   }
   return {};
+}
+
+std::string ValueRule::keys() const {
+  std::vector<std::string> names;
+  for (const auto& field : *fields_) names.emplace_back(field.name);
+  return either(names, true);
 }
 
 json ValueRule::number_schema() const {
@@ -156,6 +190,10 @@ json ValueRule::schema() const {
       return {{"type", "array"}, {"items", number().schema()}, {"minItems", 3}, {"maxItems", 3}};
     case Kind::vectors:
       return {{"type", "array"}, {"items", vector().schema()}};
+    case Kind::object:
+      return fields_schema(*fields_);
+    case Kind::objects:
+      return {{"type", "array"}, {"items", fields_schema(*fields_)}};
   }
   return {};
 }

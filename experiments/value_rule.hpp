@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -8,6 +9,8 @@
 #include "experiments/location.hpp"
 
 namespace driftless {
+
+struct Field;
 
 /// What a key's value may be: one description from which values are checked, messages are worded
 /// and the JSON Schema is written.
@@ -27,6 +30,9 @@ class ValueRule {
   /// [x, y, z], or a list of such.
   static ValueRule vector();
   static ValueRule vectors();
+  /// An object of plain fields, or a list of such; `owner` is what messages call one: "a wall".
+  static ValueRule object(std::string owner, std::vector<Field> fields);
+  static ValueRule objects(std::string owner, std::vector<Field> fields);
 
   /// Throws InputError if the value is none of these.
   void check(const nlohmann::json& value, const Location& location) const;
@@ -36,15 +42,30 @@ class ValueRule {
   nlohmann::json schema() const;
 
  private:
-  enum class Kind { number, positive, not_negative, integer, boolean, word, name, vector, vectors };
+  enum class Kind {
+    number,
+    positive,
+    not_negative,
+    integer,
+    boolean,
+    word,
+    name,
+    vector,
+    vectors,
+    object,
+    objects
+  };
   explicit ValueRule(Kind kind) : kind_(kind) {}
 
   bool holds(const nlohmann::json& value) const;
   nlohmann::json number_schema() const;
+  std::string keys() const;
 
   Kind kind_;
   std::uint64_t least_ = 0, most_ = 0;
   std::vector<std::string> words_;
+  std::string owner_;
+  std::shared_ptr<const std::vector<Field>> fields_;
 };
 
 /// A key of an object that only holds plain values.

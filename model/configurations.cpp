@@ -24,6 +24,7 @@ Fluid conservative_part(const Fluid& fluid) {
   auto parameters = fluid.parameters();
   parameters.friction = 0;
   parameters.conduction = 0;
+  for (auto& pair : parameters.pairs) pair.friction = pair.conduction = 0;
   return Fluid(parameters);
 }
 
@@ -37,11 +38,12 @@ ConfigurationChain::ConfigurationChain(const Fluid& fluid, const Box& box, State
 template <class LogWeight>
 void ConfigurationChain::advance(LogWeight&& log_weight) {
   const auto& f = system_.fluid().parameters();
-  const double thermal = std::sqrt(f.boltzmann * f.temperature / f.mass);
+  const double thermal = std::sqrt(f.boltzmann * f.temperature / f.mass);  // of the first species
   noise_.set_step(++paths_);
   system_.update([&](std::size_t i, Vector& velocity, double&) {
     auto stream = noise_.particle_stream(system_.state().id[i], Purpose::initial_velocity);
-    boost::random::normal_distribution<double> normal(0, thermal);
+    const double spread = thermal * std::sqrt(f.mass / system_.mass(i));
+    boost::random::normal_distribution<double> normal(0, spread);
     for (int axis = 0; axis < 3; ++axis) velocity[axis] = normal(stream);
   });
   const State before = system_.state();
@@ -90,9 +92,9 @@ ConfigurationSums configuration_sums(System& system) {
   const Fluid& fluid = system.fluid();
   if (!fluid.has_repulsion()) return sums;
   system.for_each_pair([&](const System::Geometry& pair) {
-    sums.potential += fluid.potential(pair.r);
-    sums.virial += pair.r * fluid.repulsive_force(pair.r);
-    sums.laplacian += 2 * fluid.potential_laplacian(pair.r);
+    sums.potential += pair.law->potential(pair.r);
+    sums.virial += pair.r * pair.law->repulsive_force(pair.r);
+    sums.laplacian += 2 * pair.law->potential_laplacian(pair.r);
   });
   for (const auto& force : system.conservative_force()) sums.squared_force += force.squaredNorm();
   return sums;

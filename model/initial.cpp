@@ -44,11 +44,13 @@ double squared_speeds(const State& state, std::size_t first, std::size_t last) {
   return sum;
 }
 
-Eigen::Vector3i lattice_sites(std::size_t particles) {
-  const int side = static_cast<int>(std::ceil(std::cbrt(static_cast<double>(particles)) - 1e-9));
-  const int per_plane = side * side;
-  const int planes = static_cast<int>((particles + per_plane - 1) / per_plane);
-  return {side, side, planes};
+/// Sites as far apart along each axis, for a box of sides in these proportions.
+Eigen::Vector3i lattice_sites(std::size_t particles, const Vector& lengths) {
+  const double per_length = std::cbrt(static_cast<double>(particles) / lengths.prod());
+  const int x = static_cast<int>(std::ceil(lengths[0] * per_length - 1e-9));
+  const int y = static_cast<int>(std::ceil(lengths[1] * per_length - 1e-9));
+  const auto per_plane = static_cast<std::size_t>(x * y);
+  return {x, y, static_cast<int>((particles + per_plane - 1) / per_plane)};
 }
 
 Vector lattice_position(const Box& box, const Eigen::Vector3i& sites, std::size_t n) {
@@ -88,7 +90,7 @@ Box make_box(const Fluid& fluid, Layout layout, std::size_t particles, double de
   const double apart = 1.25 * fluid.range();  // beyond the range, whatever the rounding
   const Vector cell(pair_distance + apart, apart, apart);
   // At least three cells a side keep every pair clear of its own images.
-  const Eigen::Vector3i sites = lattice_sites(particles / 2).cwiseMax(3);
+  const Eigen::Vector3i sites = lattice_sites(particles / 2, Vector::Ones()).cwiseMax(3);
   return {cell.cwiseProduct(sites.cast<double>())};
 }
 
@@ -98,7 +100,8 @@ State place(const Box& box, Layout layout, Placement placement, std::size_t part
   state.velocity.assign(particles, Vector::Zero());
   state.internal_energy.assign(particles, 0.0);
   const bool pairs = layout == Layout::pairs;
-  auto sites = lattice_sites(pairs ? particles / 2 : particles);
+  auto sites =
+      pairs ? lattice_sites(particles / 2, Vector::Ones()) : lattice_sites(particles, box.lengths);
   if (pairs) sites = sites.cwiseMax(3);
   for (std::size_t i = 0; i < particles; ++i) {
     state.id.push_back(static_cast<std::uint32_t>(i));

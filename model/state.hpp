@@ -30,6 +30,13 @@ struct Received {
 inline constexpr std::size_t field_place = 6, driver_place = 7, surrounding_places = 8;
 using Surroundings = std::array<Received, surrounding_places>;
 
+/// What they have received together.
+inline Received total(const Surroundings& surroundings) {
+  Received all;
+  for (const auto& received : surroundings) all += received;
+  return all;
+}
+
 /// Velocities and internal energies of all particles, in the order of storage, and what the
 /// surroundings have received since the start: fluid and surroundings together keep momentum and
 /// energy.
@@ -46,6 +53,7 @@ struct State : Motion {
   std::vector<std::uint8_t> species = {};  ///< numbers in the fluid; empty: all 0
 
   std::size_t size() const { return position.size(); }
+  std::size_t species_of(std::size_t place) const { return species.empty() ? 0 : species[place]; }
 };
 
 /// A plane wall, along which particles slip. It repels along its normal, r being the distance from

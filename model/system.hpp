@@ -44,11 +44,9 @@ class System {
   const Motion& motion() const { return state_; }
   std::size_t size() const { return state_.size(); }
   /// Mass of the particle at a place in the state.
-  double mass(std::size_t place) const {
-    return fluid_.mass(state_.species.empty() ? 0 : state_.species[place]);
-  }
+  double mass(std::size_t place) const { return fluid_.mass(state_.species_of(place)); }
   const EquationOfState& equation_of_state(std::size_t place) const {
-    return fluid_.equation_of_state(state_.species.empty() ? 0 : state_.species[place]);
+    return fluid_.equation_of_state(state_.species_of(place));
   }
   bool frozen() const { return frozen_; }
   const Counters& counters() const { return counters_; }

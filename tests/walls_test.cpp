@@ -40,12 +40,6 @@ Box walled_box(bool potential, double side = 3) {
   return box;
 }
 
-Received sum(const Surroundings& surroundings) {
-  Received all;
-  for (const auto& received : surroundings) all += received;
-  return all;
-}
-
 struct Balance {
   double energy, momentum;
 };
@@ -58,7 +52,7 @@ Balance balance(const Method& method, const Options& options, const Terms& terms
   const Vector momentum = system.momentum();
   const auto integrator = method.make(options);
   run(*integrator, system, step_size, 1, steps + 1);
-  const auto received = sum(system.motion().surroundings);
+  const auto received = total(system.motion().surroundings);
   return {system.total_energy() + received.energy - energy,
           (system.momentum() + received.momentum - momentum).norm()};
 }
