@@ -4,34 +4,11 @@
 #include <cmath>
 
 #include "model/equation_of_state.hpp"
+#include "model/exchange_laws.hpp"
 #include "model/fluid_parameters.hpp"
 #include "model/pair.hpp"
 
 namespace driftless {
-
-/// Friction of one pair: force -zeta v plus noise of strength Gamma along the pair's direction.
-template <class V>
-struct FrictionLaw {
-  V friction;       ///< zeta
-  V noise_squared;  ///< Gamma^2 = 2 k zeta Theta (Mackie et al. 1999, eq. 2.37)
-  V induced;        ///< (1/4)(d/du_i + d/du_j) Gamma^2, the noise-induced friction
-};
-
-/// Conduction of one pair: heat rate lambda (theta_j - theta_i) plus noise of strength Lambda, from
-/// j to i.
-template <class V>
-struct ConductionLaw {
-  V rate;           ///< lambda (theta_j - theta_i)
-  V noise_squared;  ///< Lambda^2 = 2 k lambda theta_i theta_j (Mackie et al. 1999, eq. 2.38)
-  V induced;        ///< (1/2)(d/du_i - d/du_j) Lambda^2, the noise-induced heat rate
-};
-
-/// How the amplitude of a noise follows a pair's energies: d ln Gamma/du_i and d ln Gamma/du_j, or
-/// the same of Lambda.
-template <class V>
-struct AmplitudeSlopes {
-  V by_u_i, by_u_j;
-};
 
 /// One of the two of a pair: a particle, or what stands for a wall.
 struct Partner {
