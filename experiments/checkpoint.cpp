@@ -1,5 +1,6 @@
 #include "experiments/checkpoint.hpp"
 
+#include <algorithm>
 #include <fstream>
 
 #include "experiments/files.hpp"
@@ -11,10 +12,13 @@ namespace {
 using nlohmann::json;
 
 json state_to_json(const State& state) {
+  const auto& received = state.surroundings;
   return {{"position", to_bytes(state.position)},
           {"velocity", to_bytes(state.velocity)},
           {"internal_energy", to_bytes(state.internal_energy)},
-          {"id", to_bytes(state.id)}};
+          {"id", to_bytes(state.id)},
+          {"species", to_bytes(state.species)},
+          {"surroundings", to_bytes(std::vector<Received>(received.begin(), received.end()))}};
 }
 
 State state_from_json(const json& object) {
@@ -23,6 +27,10 @@ State state_from_json(const json& object) {
   state.velocity = from_bytes<Vector>(object.at("velocity"));
   state.internal_energy = from_bytes<double>(object.at("internal_energy"));
   state.id = from_bytes<std::uint32_t>(object.at("id"));
+  state.species = from_bytes<std::uint8_t>(object.at("species"));
+  const auto received = from_bytes<Received>(object.at("surroundings"));
+  if (received.size() != surrounding_places) throw std::invalid_argument("bytes are missing");
+  std::copy(received.begin(), received.end(), state.surroundings.begin());
   return state;
 }
 

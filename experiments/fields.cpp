@@ -63,19 +63,20 @@ void Fields::sample(System& system, std::uint64_t) {
 
 void Fields::sum_particles(const System& system) {
   const State& state = system.state();
-  const Fluid& fluid = system.fluid();
   bin_.resize(state.size());
   for (std::size_t i = 0; i < state.size(); ++i) {
     const std::size_t bin = bin_of(state.position[i]);
     bin_[i] = static_cast<std::uint32_t>(bin);
     summed(bin, particles) += 1;
-    summed(bin, mass) += fluid.mass();
-    summed(bin, momentum_x) += fluid.mass() * state.velocity[i][0];
-    summed(bin, momentum_y) += fluid.mass() * state.velocity[i][1];
-    summed(bin, momentum_z) += fluid.mass() * state.velocity[i][2];
+    const double m = system.mass(i);
+    summed(bin, mass) += m;
+    summed(bin, momentum_x) += m * state.velocity[i][0];
+    summed(bin, momentum_y) += m * state.velocity[i][1];
+    summed(bin, momentum_z) += m * state.velocity[i][2];
     if (isothermal_) continue;
-    summed(bin, inverse_temperature) += 1 / fluid.temperature(state.internal_energy[i]);
-    summed(bin, internal_energy) += state.internal_energy[i];
+    const double u = state.internal_energy[i];
+    summed(bin, inverse_temperature) += 1 / system.equation_of_state(i).temperature(u);
+    summed(bin, internal_energy) += u;
   }
 }
 
@@ -86,7 +87,7 @@ void Fields::sum_peculiar(const System& system) {
     const Vector momentum(summed(bin, momentum_x), summed(bin, momentum_y),
                           summed(bin, momentum_z));
     const Vector mean = momentum / summed(bin, mass);
-    summed(bin, peculiar) += system.fluid().mass() * (state.velocity[i] - mean).squaredNorm();
+    summed(bin, peculiar) += system.mass(i) * (state.velocity[i] - mean).squaredNorm();
   }
   for (std::size_t bin = 0; bin < product(bins_); ++bin) {
     summed(bin, freedom) = std::max(0.0, summed(bin, particles) - 1);

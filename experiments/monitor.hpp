@@ -25,7 +25,10 @@ class Monitor : public Observer {
     std::vector<double> values;
   };
   /// time; kinetic_, internal_, potential_ and total_energy; kinetic_temperature (about the centre
-  /// of mass) and internal_temperature, N/sum(1/theta), where they exist; momentum_x, _y and _z.
+  /// of mass) and internal_temperature, N/sum(1/theta), where they exist; momentum_x, _y and _z;
+  /// surroundings_energy, what walls, field and driver have received in all since the start: its
+  /// sum with total_energy is conserved; for each wall, as lower_x_wall_, the _energy and the
+  /// _momentum along its axis that it has received.
   const std::vector<Column>& columns() const { return columns_; }
   std::size_t rows() const { return columns_.front().values.size(); }
 

@@ -91,7 +91,7 @@ void write_results(const SimulateArguments& arguments, const Simulation& simulat
 std::string last_values(const Monitor& monitor) {
   std::string text;
   for (const auto& column : monitor.columns()) {
-    if (column.name.rfind("momentum", 0) == 0) continue;
+    if (column.name.find("momentum") != column.name.npos) continue;
     std::string name = column.name;
     std::replace(name.begin(), name.end(), '_', ' ');
     text += fmt::format("{}{} {:.6g}", text.empty() ? "" : ", ", name, column.values.back());

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <iterator>
+#include <string_view>
 
 #include "experiments/location.hpp"
 
@@ -12,6 +14,16 @@ namespace {
 using nlohmann::json;
 using Text = fmt::memory_buffer;
 
+/// Readers expect chemical elements; X is none, as ASE knows it.
+std::string_view species_symbol(const System& system, std::size_t place) {
+  constexpr std::array<std::string_view, 10> elements = {"H", "He", "Li", "Be", "B",
+                                                         "C", "N",  "O",  "F",  "Ne"};
+  if (system.fluid().species() == 1) return "X";
+  const auto& species = system.state().species;
+  const std::size_t number = species.empty() ? 0 : species[place];
+  return number < elements.size() ? elements[number] : "X";
+}
+
 void add(Text& text, const Vector& vector) {
   fmt::format_to(std::back_inserter(text), " {:.9g} {:.9g} {:.9g}", vector[0], vector[1],
                  vector[2]);
@@ -19,26 +31,30 @@ void add(Text& text, const Vector& vector) {
 
 void add_header(Text& text, const System& system, std::uint64_t step, double time_step) {
   const Vector& lengths = system.box().lengths;
+  const auto periodic = [&](int axis) { return system.box().is_walled(axis) ? 'F' : 'T'; };
   fmt::format_to(std::back_inserter(text),
                  "{}\nLattice=\"{:.17g} 0 0 0 {:.17g} 0 0 0 {:.17g}\" "
                  "Properties=species:S:1:pos:R:3:velo:R:3:momenta:R:3:masses:R:1{}:id:I:1 "
-                 "Time={:.12g} Step={} pbc=\"T T T\"\n",
+                 "Time={:.12g} Step={} pbc=\"{} {} {}\"\n",
                  system.size(), lengths[0], lengths[1], lengths[2],
                  system.fluid().isothermal() ? "" : ":internal_energy:R:1:temperature:R:1",
-                 static_cast<double>(step) * time_step, step);
+                 static_cast<double>(step) * time_step, step, periodic(0), periodic(1),
+                 periodic(2));
 }
 
 void add_particle(Text& text, const System& system, std::size_t place) {
   const State& state = system.state();
-  const Fluid& fluid = system.fluid();
-  text.push_back('X');  // no chemical element, as ASE knows it
+  const double mass = system.mass(place);
+  const std::string_view symbol = species_symbol(system, place);
+  text.append(symbol.data(), symbol.data() + symbol.size());
   add(text, state.position[place]);
   add(text, state.velocity[place]);
-  add(text, fluid.mass() * state.velocity[place]);
-  fmt::format_to(std::back_inserter(text), " {:.9g}", fluid.mass());
-  if (!fluid.isothermal()) {
+  add(text, mass * state.velocity[place]);
+  fmt::format_to(std::back_inserter(text), " {:.9g}", mass);
+  if (!system.fluid().isothermal()) {
     const double u = state.internal_energy[place];
-    fmt::format_to(std::back_inserter(text), " {:.9g} {:.9g}", u, fluid.temperature(u));
+    fmt::format_to(std::back_inserter(text), " {:.9g} {:.9g}", u,
+                   system.equation_of_state(place).temperature(u));
   }
   fmt::format_to(std::back_inserter(text), " {}\n", state.id[place]);
 }

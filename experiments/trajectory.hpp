@@ -9,9 +9,10 @@
 namespace driftless {
 
 /// Writes frames to an extended XYZ file, which OVITO and ASE read: cell and time in the second
-/// line of a frame; for each particle, in the order of storage, species, position, velocity
-/// (`velo`, which OVITO takes), momentum and mass (which ASE takes instead), internal energy and
-/// temperature where there are any, and id. Numbers have nine digits.
+/// line of a frame; for each particle, in the order of storage, species (X where there is one
+/// alone; H, He, Li, ... where there are more), position, velocity (`velo`, which OVITO takes),
+/// momentum and mass (which ASE takes instead), internal energy and temperature where there are
+/// any, and id. Axes with walls are not periodic. Numbers have nine digits.
 ///
 /// The first frame replaces a file that exists. After a restart the file is cut back to what it was
 /// at the checkpoint and goes on from there, so that it equals that of an uninterrupted run.

@@ -82,6 +82,30 @@ TEST(Fields, OfAStateMadeByHand) {
   EXPECT_EQ(values(fields, "internal_energy")[1], 20);
 }
 
+/// The first two particles of five() are of a second species.
+System system_of_two_species() {
+  auto fluid = unit_fluid();
+  fluid.further_species = {{.mass = 6, .heat_capacity = 5}};
+  State state = state_of(five());
+  state.species = {1, 1, 0, 0, 0};
+  return System(Fluid(fluid), Box{Vector(4, 6, 8)}, state, Noise(1, 0));
+}
+
+TEST(Fields, OfTwoSpeciesMoveWithTheirCentreOfMass) {
+  System system = system_of_two_species();
+  Fields fields(system, {2, 1, 1});
+  fields.sample(system, 0);
+  const Vector mean = (6 * Vector(1, 0, 0) + 6 * Vector(3, 0, 3) + 2 * Vector(2, 3, 0)) / 14;
+  EXPECT_NEAR(values(fields, "velocity_y")[0], mean[1], 1e-15);
+  EXPECT_NEAR(values(fields, "velocity_z")[0], mean[2], 1e-15);
+  const double energy = 6 * (Vector(1, 0, 0) - mean).squaredNorm() +
+                        6 * (Vector(3, 0, 3) - mean).squaredNorm() +
+                        2 * (Vector(2, 3, 0) - mean).squaredNorm();
+  EXPECT_NEAR(values(fields, "kinetic_temperature")[0], energy / (3 * 0.5 * 2), 1e-13);
+  // Temperatures 10/5, 20/5 and 40/10.
+  EXPECT_NEAR(values(fields, "internal_temperature")[0], 3 / (0.5 + 0.25 + 0.25), 1e-14);
+}
+
 TEST(Fields, BinsAreCountedAlongXFirst) {
   System system = system_of({{{1, 1, 7}, {0, 0, 0}, 1}, {{3, 5, 1}, {0, 0, 0}, 1}});
   Fields fields(system, {2, 3, 4});
@@ -264,6 +288,42 @@ TEST(Monitor, OfAStateMadeByHand) {
               2 * (kinetic - of_centre) / (12 * 0.5), 1e-12);
   EXPECT_NEAR(columns["internal_temperature"][0].get<double>(), 5 / (1 + 0.5 + 0.25 + 1 + 1.0 / 3),
               1e-13);
+}
+
+TEST(Monitor, OfTwoSpecies) {
+  System system = system_of_two_species();
+  Monitor monitor(system, 1, 12);
+  monitor.sample(system, 0);
+  const json columns = monitor.to_json()["columns"];
+  const double kinetic = 3 + 54 + 13 + 26 + 50;
+  EXPECT_EQ(columns["kinetic_energy"], json({kinetic}));
+  const Vector momentum(24, 30, 18);
+  EXPECT_EQ(columns["momentum_x"], json({momentum[0]}));
+  const double about_centre = kinetic - momentum.squaredNorm() / (2 * 18);
+  EXPECT_NEAR(columns["kinetic_temperature"][0].get<double>(), 2 * about_centre / (12 * 0.5),
+              1e-12);
+  EXPECT_NEAR(columns["internal_temperature"][0].get<double>(),
+              5 / (0.5 + 0.25 + 0.25 + 1 + 1.0 / 3), 1e-13);
+}
+
+TEST(Monitor, ShowsWhatWallsReceive) {
+  Box box{Vector(4, 6, 8)};
+  box.walls[2] = Wall{.temperature = 3.0, .friction = 1};
+  box.walls[3] = Wall{};
+  State state = state_of(five());
+  state.surroundings[2] = {Vector(0, -7, 0), 5};
+  state.surroundings[3] = {Vector(0, 9, 0), 0};
+  state.surroundings[driver_place] = {Vector::Zero(), -2};
+  System system(Fluid(unit_fluid()), box, state, Noise(1, 0));
+  Monitor monitor(system, 1, 12);
+  monitor.sample(system, 0);
+  const json columns = monitor.to_json()["columns"];
+  EXPECT_EQ(columns["surroundings_energy"], json({3.0}));
+  EXPECT_EQ(columns["lower_y_wall_energy"], json({5.0}));
+  EXPECT_EQ(columns["lower_y_wall_momentum"], json({-7.0}));
+  EXPECT_EQ(columns["upper_y_wall_energy"], json({0.0}));
+  EXPECT_EQ(columns["upper_y_wall_momentum"], json({9.0}));
+  EXPECT_FALSE(columns.contains("lower_x_wall_energy"));
 }
 
 TEST(Monitor, IsThinnedToRowsEquallyFarApart) {

@@ -7,13 +7,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <sstream>
 
 #include "experiments/checkpoint.hpp"
 #include "experiments/fields.hpp"
-#include "experiments/judge/short_paths.hpp"
 #include "experiments/judge/wide_system.hpp"
 #include "experiments/monitor.hpp"
 #include "experiments/study.hpp"
@@ -62,14 +62,23 @@ struct Remains {
   std::uint64_t resumed_after = 0;
 };
 
+bool same_surroundings(const Surroundings& a, const Surroundings& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), [](const Received& one, const Received& other) {
+    return one.momentum == other.momentum && one.energy == other.energy;
+  });
+}
+
 bool same(const Remains& a, const Remains& b) {
-  return same_bits(a.state, b.state) && a.kept == b.kept && a.monitor == b.monitor &&
-         a.fields == b.fields && a.trajectory == b.trajectory;
+  return same_bits(a.state, b.state) && a.state.species == b.state.species &&
+         same_surroundings(a.state.surroundings, b.state.surroundings) && a.kept == b.kept &&
+         a.monitor == b.monitor && a.fields == b.fields && a.trajectory == b.trajectory;
 }
 
 struct Setting {
   const Method* method = find_method("shardlow-s1");
   FluidParameters fluid;
+  Box box = small_box();
+  State start = {};  ///< small_state() if empty
   std::uint64_t last = last_step;
   unsigned threads = 1;
   double checkpoint_every = 1e9;  ///< seconds: at the end alone
@@ -92,10 +101,10 @@ class LongRun : public ::testing::Test {
   fs::path checkpoint() const { return folder_ / "checkpoint"; }
 
   /// A program that makes everything anew and finds what another left in the folder.
-  Remains program(const Setting& setting, bool wide = false) const {
-    System system =
-        wide ? judge::wide_system(setting.fluid, judge::wide_state(setting.fluid), 1)
-             : System(Fluid(setting.fluid), small_box(), small_state(setting.fluid), Noise(7, 0));
+  Remains program(const Setting& setting) const {
+    System system(Fluid(setting.fluid), setting.box,
+                  setting.start.size() > 0 ? setting.start : small_state(setting.fluid),
+                  Noise(7, 0));
     const auto integrator = setting.method->make({});
     Trajectory trajectory(folder_ / "trajectory.xyz", step_size);
     Monitor monitor(system, step_size, 3 * static_cast<double>(system.size() - 1));
@@ -146,6 +155,20 @@ Setting setting_for(const Method& method) {
   return setting;
 }
 
+/// Walls and gravity beside it, and particles of two species.
+Setting bounded_setting_for(const Method& method) {
+  Setting setting = setting_for(method);
+  const Wall wall{.temperature = 1.6, .repulsion = 20, .friction = 5, .conduction = 7};
+  setting.box.walls[0] = setting.box.walls[1] = wall;
+  setting.box.gravity = Vector(-0.4, 0, 0);
+  setting.fluid.further_species = {{.mass = 2.5, .heat_capacity = 20}};
+  setting.start = small_state(setting.fluid);
+  for (std::size_t i = 0; i < setting.start.size(); ++i) {
+    setting.start.species.push_back(i % 3 == 0 ? 1 : 0);
+  }
+  return setting;
+}
+
 class LongRunOf : public LongRun, public ::testing::WithParamInterface<const Method*> {};
 
 TEST_P(LongRunOf, GoesOnWithTheSameBits) {
@@ -163,6 +186,17 @@ TEST_P(LongRunOf, GoesOnWithTheSameBits) {
   }
 }
 
+TEST_P(LongRunOf, GoesOnWithTheSameBitsBetweenWalls) {
+  Setting setting = bounded_setting_for(*GetParam());
+  const auto whole = program(setting);
+  EXPECT_NE(whole.state.surroundings[0].energy, 0);
+  start_anew();
+  setting.last = 5;
+  program(setting);
+  setting.last = last_step;
+  EXPECT_TRUE(same(program(setting), whole));
+}
+
 TEST_P(LongRunOf, GoesOnWithTheSameBitsAfterAKill) {
   Setting setting = setting_for(*GetParam());
   const auto whole = program(setting);
@@ -178,6 +212,14 @@ TEST_P(LongRunOf, GoesOnWithTheSameBitsAfterAKill) {
   EXPECT_TRUE(same(resumed, whole));
 }
 
+/// Leaves something out of the checkpoint that lies there.
+void rob(const fs::path& path, const std::function<void(Checkpoint&)>& change) {
+  auto robbed = read_checkpoint(path, json::from_cbor(content(path)).at("identity"));
+  ASSERT_TRUE(robbed);
+  change(*robbed);
+  write_checkpoint(path, *robbed);
+}
+
 /// A checkpoint without what the integrator keeps is seen by the comparison of these tests.
 TEST_P(LongRunOf, WithoutWhatItsIntegratorKeepsIsAnother) {
   Setting setting = setting_for(*GetParam());
@@ -186,16 +228,28 @@ TEST_P(LongRunOf, WithoutWhatItsIntegratorKeepsIsAnother) {
   start_anew();
   setting.last = 5;
   program(setting);
-  const json identity = json::from_cbor(content(checkpoint())).at("identity");
-  auto robbed = read_checkpoint(checkpoint(), identity);
-  ASSERT_TRUE(robbed);
-  robbed->integrator.clear();
-  write_checkpoint(checkpoint(), *robbed);
+  rob(checkpoint(), [](Checkpoint& robbed) { robbed.integrator.clear(); });
   setting.last = last_step;
   EXPECT_FALSE(same(program(setting), whole));
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, LongRunOf, ::testing::ValuesIn(methods()), test_name);
+
+TEST_F(LongRun, WithoutSurroundingsOrSpeciesIsAnother) {
+  Setting setting = bounded_setting_for(*find_method("shardlow-s1"));
+  const auto whole = program(setting);
+  const std::vector<std::function<void(Checkpoint&)>> robberies = {
+      [](Checkpoint& robbed) { robbed.state.surroundings = {}; },
+      [](Checkpoint& robbed) { robbed.state.species.assign(27, 0); }};
+  for (const auto& robbery : robberies) {
+    start_anew();
+    setting.last = 5;
+    program(setting);
+    rob(checkpoint(), robbery);
+    setting.last = last_step;
+    EXPECT_FALSE(same(program(setting), whole));
+  }
+}
 
 TEST_F(LongRun, SomeMethodsKeepSomething) {
   std::size_t keeping = 0;
@@ -209,14 +263,16 @@ TEST_F(LongRun, SomeMethodsKeepSomething) {
 TEST_F(LongRun, IsTheSameForAnyNumberOfThreadsBeforeAndAfterTheRestart) {
   Setting setting;
   setting.fluid = judge::wide_fluid(FrictionClosure::noise);
-  const auto whole = program(setting, true);
+  setting.box = judge::wide_box();
+  setting.start = judge::wide_state(setting.fluid);
+  const auto whole = program(setting);
   start_anew();
   setting.last = 5;
   setting.threads = 3;
-  program(setting, true);
+  program(setting);
   setting.last = last_step;
   setting.threads = 2;
-  EXPECT_TRUE(same(program(setting, true), whole));
+  EXPECT_TRUE(same(program(setting), whole));
 }
 
 TEST_F(LongRun, IsTheSameWithoutObserversAndCheckpoints) {

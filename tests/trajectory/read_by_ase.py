@@ -19,7 +19,8 @@ def difference(read, written):
 
 
 def check_frame(atoms, written, internal):
-    assert list(atoms.pbc) == [True, True, True]
+    assert list(atoms.pbc) == written["periodic"]
+    assert atoms.get_chemical_symbols() == written["symbol"]
     assert list(atoms.cell.angles()) == [90, 90, 90]
     assert list(atoms.arrays["id"]) == written["id"]
     assert atoms.info["Step"] == written["step"]
@@ -60,3 +61,4 @@ def check_file(folder, name, internal):
 
 check_file(Path(sys.argv[1]), "energies", internal=True)
 check_file(Path(sys.argv[1]), "isothermal", internal=False)
+check_file(Path(sys.argv[1]), "walls_and_species", internal=True)

@@ -25,13 +25,16 @@ class Witness : public Observer {
     json frame = {{"step", step},
                   {"time", static_cast<double>(step) * step_size},
                   {"lengths", to_json(system.box().lengths)},
-                  {"id", state.id}};
+                  {"id", state.id},
+                  {"periodic", {true, true, !system.box().is_walled(2)}}};
     for (std::size_t i = 0; i < state.size(); ++i) {
       frame["position"].push_back(to_json(state.position[i]));
       frame["velocity"].push_back(to_json(state.velocity[i]));
-      frame["mass"].push_back(system.fluid().mass());
+      frame["mass"].push_back(system.mass(i));
+      frame["symbol"].push_back(state.species.empty() ? "X" : state.species[i] == 0 ? "H" : "He");
       frame["internal_energy"].push_back(state.internal_energy[i]);
-      frame["temperature"].push_back(system.fluid().temperature(state.internal_energy[i]));
+      frame["temperature"].push_back(
+          system.equation_of_state(i).temperature(state.internal_energy[i]));
     }
     frames_.push_back(frame);
   }
@@ -42,15 +45,22 @@ class Witness : public Observer {
   json frames_ = json::array();
 };
 
-void write(const std::filesystem::path& folder, const std::string& name, bool isothermal) {
+void write(const std::filesystem::path& folder, const std::string& name, bool isothermal,
+           bool two_species) {
   judge::Terms terms;
   terms.potential = true;
   terms.isothermal = isothermal;
-  const auto fluid = judge::small_fluid(terms, 0.5);
+  auto fluid = judge::small_fluid(terms, 0.5);
   State start = judge::small_state(fluid);
+  Box box{Vector(3, 3.25, 4)};
+  if (two_species) {
+    fluid.further_species = {{.mass = 3, .heat_capacity = 30}};
+    for (std::size_t i = 0; i < start.size(); ++i) start.species.push_back(i % 2);
+    box.walls[4] = box.walls[5] = Wall{.repulsion = 20};
+  }
   // Ids that are no places.
   for (auto& id : start.id) id = 3 * (26 - id) + 5;
-  System system(Fluid(fluid), Box{Vector(3, 3.25, 4)}, start, Noise(7, 0));
+  System system(Fluid(fluid), box, start, Noise(7, 0));
   const auto integrator = find_method("shardlow-s1")->make({});
   Trajectory trajectory(folder / (name + ".xyz"), step_size);
   Witness witness;
@@ -65,6 +75,7 @@ void write(const std::filesystem::path& folder, const std::string& name, bool is
 }  // namespace
 
 int main(int, char** argv) {
-  write(argv[1], "energies", false);
-  write(argv[1], "isothermal", true);
+  write(argv[1], "energies", false, false);
+  write(argv[1], "isothermal", true, false);
+  write(argv[1], "walls_and_species", false, true);
 }
