@@ -33,7 +33,7 @@ void Progress::renew(bool always) {
   if (!always && now - shown_ < std::chrono::milliseconds(250)) return;
   shown_ = now;
   fmt::print(stderr, "\r\033[K{} {} of {} done, {} runs under way{}{}", things_, done_, cells_,
-             running_, unstable_ == 0 ? "" : fmt::format(", {} unstable", unstable_), time_left());
+             running_, failed_ == 0 ? "" : fmt::format(", {} failed", failed_), time_left());
   std::fflush(stderr);
 }
 
@@ -53,7 +53,7 @@ void Progress::replica_finished(double predicted_cost) {
 void Progress::cell_finished(const std::string& name, const std::string& status) {
   const std::lock_guard lock(mutex_);
   ++done_;
-  if (status != "ok" && status != "not_applicable") ++unstable_;
+  if (status != "ok" && status != "not_applicable") ++failed_;
   if (!quiet_ && !terminal_) {
     fmt::print(stderr, "[{}/{}{}] {}: {}\n", done_, cells_, time_left(), name, status);
   }

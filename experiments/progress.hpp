@@ -16,7 +16,8 @@ class Progress {
 
   void replica_started();
   void replica_finished(double predicted_cost);
-  /// `name` says which cell, `status` its status; failed ones are counted as unstable.
+  /// `name` says which cell, `status` its status; all but "ok" and "not_applicable" are counted as
+  /// failed.
   void cell_finished(const std::string& name, const std::string& status);
   /// Cells taken over from an earlier run.
   void cells_resumed(std::size_t cells);
@@ -30,7 +31,7 @@ class Progress {
   std::mutex mutex_;
   std::string things_;
   bool quiet_, terminal_;
-  std::size_t cells_, done_ = 0, running_ = 0, unstable_ = 0;
+  std::size_t cells_, done_ = 0, running_ = 0, failed_ = 0;
   double cost_, cost_done_ = 0;
   std::chrono::steady_clock::time_point start_, shown_;
 };
