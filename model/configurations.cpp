@@ -28,6 +28,22 @@ Fluid conservative_part(const Fluid& fluid) {
   return Fluid(parameters);
 }
 
+/// Potential and Laplacian of walls and field; to the virial, a sum over pairs, they do not belong.
+void add_boundaries(System& system, ConfigurationSums& sums) {
+  sums.potential = system.potential_energy();
+  const State& state = system.state();
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    for (std::size_t face = 0; face < field_place; ++face) {
+      const PairLaw* const wall = system.fluid().boundary_law(face, state.species_of(i));
+      if (!wall) continue;
+      const auto axis = static_cast<Eigen::Index>(face / 2);
+      const double x = state.position[i][axis];
+      sums.laplacian +=
+          wall->potential_curvature(face % 2 == 1 ? system.box().lengths[axis] - x : x);
+    }
+  }
+}
+
 }  // namespace
 
 ConfigurationChain::ConfigurationChain(const Fluid& fluid, const Box& box, State state,
@@ -96,6 +112,7 @@ ConfigurationSums configuration_sums(System& system) {
     sums.virial += pair.r * pair.law->repulsive_force(pair.r);
     sums.laplacian += 2 * pair.law->potential_laplacian(pair.r);
   });
+  if (system.box().is_bounded()) add_boundaries(system, sums);
   for (const auto& force : system.conservative_force()) sums.squared_force += force.squaredNorm();
   return sums;
 }

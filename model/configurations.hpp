@@ -40,10 +40,10 @@ class ConfigurationChain {
   std::uint64_t paths_ = 0, accepted_ = 0;
 };
 
-/// Sums over pairs that belong to a configuration.
+/// Sums over pairs, and over walls and a field, that belong to a configuration.
 struct ConfigurationSums {
   double potential = 0;      ///< Psi
-  double virial = 0;         ///< sum over pairs of r F
+  double virial = 0;         ///< sum over pairs of r F, walls left out
   double squared_force = 0;  ///< sum over particles of |F_i|^2
   double laplacian = 0;      ///< sum over particles of the Laplacian of Psi at r_i
 };

@@ -41,10 +41,14 @@ double PairLaw::range() const {
   return range;
 }
 
-double PairLaw::potential_laplacian(double distance) const {
+double PairLaw::potential_curvature(double distance) const {
   const double range = coefficients_.repulsion_range;
-  if (distance >= range) return 0;
-  return coefficients_.repulsion / range - 2 * repulsive_force(distance) / distance;
+  return uniform_ || distance >= range ? 0 : coefficients_.repulsion / range;
+}
+
+double PairLaw::potential_laplacian(double distance) const {
+  if (distance >= coefficients_.repulsion_range) return 0;
+  return potential_curvature(distance) - 2 * repulsive_force(distance) / distance;
 }
 
 }  // namespace driftless

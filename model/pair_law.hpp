@@ -95,6 +95,8 @@ class PairLaw {
   }
   /// psi''(r) + 2 psi'(r)/r, the Laplacian of psi with respect to one particle's position.
   double potential_laplacian(double distance) const;
+  /// psi''(r).
+  double potential_curvature(double distance) const;
 
   /// Theta of two temperatures, 1/Theta = (1/theta_i + 1/theta_j)/2 (Mackie et al. 2.37).
   template <class V>

@@ -6,6 +6,7 @@
 
 #include "experiments/judge/wide_system.hpp"
 #include "experiments/statistics.hpp"
+#include "model/configurations.hpp"
 #include "model/initial.hpp"
 #include "tests/method_names.hpp"
 #include "tests/small_system.hpp"
@@ -168,6 +169,53 @@ TEST(WalledBox, RefusesWhatMakesNoSense) {
   Box slanted = walled_box(true);
   slanted.gravity = Vector(0.1, 0, -1);
   refused(slanted);
+}
+
+/// <|grad Psi|^2>/(k T <lap Psi>) of a soft fluid between walls and in a field, by Monte Carlo,
+/// with its error from independent chains; `pairs_alone` leaves the walls' part of the Laplacian
+/// out.
+std::pair<double, double> configurational_temperature(bool pairs_alone) {
+  const auto f = small_fluid({FrictionClosure::noise, HeatForm::none, true}, boltzmann);
+  const Fluid fluid(f);
+  const Box box = walled_box(true);
+  constexpr std::size_t chains = 24;
+  Eigen::ArrayXd found(chains);
+  for (std::size_t n = 0; n < chains; ++n) {
+    const Noise noise(21, n);
+    ConfigurationChain chain(fluid, box,
+                             place(box, Layout::fluid, Placement::lattice, 50, 0, noise), noise);
+    double forces = 0, laplacian = 0;
+    for (int path = -60; path < 240; ++path) {
+      chain.advance_canonical();
+      if (path < 0) continue;
+      const auto sums = configuration_sums(chain.system());
+      forces += sums.squared_force;
+      laplacian += sums.laplacian;
+      if (!pairs_alone) continue;
+      for (const auto& position : chain.system().state().position) {
+        for (const int axis : {0, 2}) {
+          const auto& wall = *box.walls[static_cast<std::size_t>(2 * axis)];
+          const double x = std::min(position[axis], box.lengths[axis] - position[axis]);
+          if (x < wall.repulsion_range) laplacian -= wall.repulsion / wall.repulsion_range;
+        }
+      }
+    }
+    found[static_cast<Eigen::Index>(n)] = forces / (boltzmann * f.temperature * laplacian);
+  }
+  const double mean = found.mean();
+  return {mean, std::sqrt((found - mean).square().sum() / (chains * (chains - 1.0)))};
+}
+
+// Beyond 10 with 23 degrees of freedom less than once in 10^9 times.
+TEST(WalledBox, HasTheConfigurationalTemperatureOfItsPotential) {
+  const auto [value, error] = configurational_temperature(false);
+  EXPECT_LT(std::abs(value - 1), 10 * error);
+  EXPECT_LT(error, 0.01);
+}
+
+TEST(WalledBox, IsSeenToLackTheWallsPotential) {
+  const auto [value, error] = configurational_temperature(true);
+  EXPECT_GT(std::abs(value - 1), 10 * error);
 }
 
 /// Mean of 1/theta and of kinetic energy per degree, times the walls' temperature, of a fluid
