@@ -400,7 +400,7 @@ Coefficients measured(Integrator& integrator) {
   for (unsigned replica = 0; replica < 14; ++replica) {
     System system = ideal_start(f, box, Noise(11, replica));
     std::uint64_t done = 0;
-    const auto record = relax({{0}, 1, 0.4, 0, 0.1}, {0.1, 2, 50, 2}, integrator, system, done);
+    const auto record = relax({{0}, 1, 0.5, 0, 0.1}, {0.1, 2, 50, 2}, integrator, system, done);
     transverse.push_back(record.transverse), heat.push_back(record.temperature);
     interval = record.interval;
   }

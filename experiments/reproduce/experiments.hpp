@@ -3,8 +3,11 @@
 #include "experiments/reproduce/experiment.hpp"
 
 /// Every experiment, a line each: `name` is defined in a file of this folder.
-#define DRIFTLESS_EXPERIMENTS(EXPERIMENT) \
-  EXPERIMENT(marsh_coveney_entropy)       \
+#define DRIFTLESS_EXPERIMENTS(EXPERIMENT)     \
+  EXPERIMENT(avalos_mackie_1999_conductivity) \
+  EXPERIMENT(avalos_mackie_1999_viscosity)    \
+  EXPERIMENT(marsh_coveney_entropy)           \
+  EXPERIMENT(methods_transport)               \
   EXPERIMENT(soleymani_2020_figure_1)
 
 namespace driftless::reproduce {
