@@ -122,7 +122,7 @@ void wavelength_rows(const Case& which, const Conditions& conditions, const Reco
         fmt::format("{}, r* = {:g}, at a wavelength of {:g}", which.name, which.range, wavelength);
     row.unit = "zeta_0/l";
     row.paper = Interval{which.published, which.published, which.published};
-    row.ours = interval(*found);
+    row.ours = interval_of(*found);
     row.verdict = compare(row.ours, *row.paper, 0.1);
     row.explanation =
         fmt::format("mean field at this wavelength {:.3f}; of long waves {:.3f}",
@@ -149,7 +149,7 @@ void crossing_row(const Case& which, const Conditions& conditions, const Records
   for (const double wavelength : wavelengths(which, conditions.effort)) {
     const auto found = found_at(records, which.range, wavelength);
     if (!found) continue;
-    const Interval one = interval(*found);
+    const Interval one = interval_of(*found);
     middle.emplace_back(wavelength, one.value);
     low.emplace_back(wavelength, one.low);
     high.emplace_back(wavelength, one.high);
@@ -191,10 +191,12 @@ void limit_row(const Case& which, const Conditions& conditions, const Records& r
   const double theory = transport::dissipative_viscosity(f, 1) + carried;
   row.paper = Interval{theory, theory, theory};
   row.paper_text = "2 pi r*^5/1575 + rho k T/(2 w_0)";
-  row.ours = interval(scaled(*found, factor));
+  row.ours = interval_of(scaled(*found, factor));
   row.verdict = compare(row.ours, *row.paper, 0.2);
-  row.explanation = fmt::format("friction {:.4f}, carried momentum {:.4f}; the paper gives {:g}",
-                                transport::dissipative_viscosity(f, 1), carried, which.published);
+  row.explanation = fmt::format(
+      "friction {:.4f}, carried momentum {:.4f}; the paper gives {:g}. Friction's share is that of "
+      "a uniform gradient: the network of particles where chance puts them has less",
+      transport::dissipative_viscosity(f, 1), carried, which.published);
   outcome.rows.push_back(row);
 }
 

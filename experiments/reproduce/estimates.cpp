@@ -25,13 +25,8 @@ std::optional<Estimate> read_estimate(const nlohmann::json& record) {
   return estimate;
 }
 
-Interval interval(const Estimate& estimate) {
-  const double half = interval_quantile * estimate.error;
-  return {estimate.mean, estimate.mean - half, estimate.mean + half};
-}
-
 judge::Point point(double x, const Estimate& estimate) {
-  const Interval ours = interval(estimate);
+  const Interval ours = interval_of(estimate);
   return {x, ours.value, ours.low, ours.high};
 }
 

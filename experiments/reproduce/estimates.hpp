@@ -11,8 +11,7 @@ nlohmann::json to_json(const Estimate& estimate);
 /// The estimate of a record; nothing if it has no value or no error.
 std::optional<Estimate> read_estimate(const nlohmann::json& record);
 
-/// The 95 % interval.
-Interval interval(const Estimate& estimate);
+/// With the 95 % interval.
 judge::Point point(double x, const Estimate& estimate);
 
 /// The same of a quantity that is `factor` times as large.

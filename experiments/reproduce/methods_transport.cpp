@@ -148,7 +148,7 @@ Row row_of(const TransportScene& scene, const Method& method, double step,
   const std::string cell = cell_name(scene, method, step);
   row.setting = cell;
   row.unit = unit_of(coefficient);
-  if (reference.value) row.paper = interval(*reference.value);
+  if (reference.value) row.paper = interval_of(*reference.value);
   row.paper_text = fmt::format("limit of small steps, {} methods pooled", reference.methods);
   const auto ours = found(records, cell, coefficient);
   const auto& record = records.at(cell);
@@ -160,7 +160,7 @@ Row row_of(const TransportScene& scene, const Method& method, double step,
                                   record.value("runs", 0), record.value("cause", "no decay seen"));
     return row;
   }
-  row.ours = interval(*ours);
+  row.ours = interval_of(*ours);
   if (!reference.value) return row;
   row.verdict = compare(row.ours, *row.paper, 0.2);
   const double off = ours->mean / reference.value->mean - 1;
@@ -198,7 +198,7 @@ void pooled_row(const TransportScene& scene, const std::string& coefficient, con
   row.quantity = coefficient;
   row.setting = scene.name + ", limit of small steps";
   row.unit = unit_of(coefficient);
-  row.ours = interval(*reference.value);
+  row.ours = interval_of(*reference.value);
   row.explanation = fmt::format("{} consistent methods pooled", reference.methods);
   if (!reference.left_out.empty())
     row.explanation += "; left out as outliers: " + reference.left_out;
@@ -225,7 +225,7 @@ void sound_rows(const TransportScene& ideal, const Records& records, Outcome& ou
     const double theory = transport::sound_speed(ideal.fluid);
     row.paper = Interval{theory, theory, theory};
     row.paper_text = "MAN 3.30";
-    row.ours = interval(*ours);
+    row.ours = interval_of(*ours);
     row.verdict = compare(row.ours, *row.paper, 0.1);
     row.explanation =
         "waves much longer than the 3 units of length that a particle flies are sound";

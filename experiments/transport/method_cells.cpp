@@ -88,7 +88,7 @@ void run_cube(const TransportScene& scene, const MethodChoice& choice, double st
   const auto integrator = find_method(choice.name)->make(choice.options);
   std::uint64_t done = 0;
   follow_particles(scene, step, *integrator, system, done, curves);
-  Waves waves{{0, 1, 2}, 1, 0, 0, 0.05};
+  Waves waves{{0, 1, 2}, 1, 0, 0, 0.1};
   if (!has_flow_box(scene)) waves.transverse = waves.longitudinal = 0.2;
   const auto record = follow_waves(waves, scene.heat_window, scene.heat_impositions, step,
                                    *integrator, system, done);
@@ -106,7 +106,7 @@ WaveRecord flow(const TransportScene& scene, const MethodChoice& choice, double 
   System system = ideal_start(scene.fluid, box, Noise(seed, replica));
   const auto integrator = find_method(choice.name)->make(choice.options);
   std::uint64_t done = 0;
-  return follow_waves({{0}, 1, 0.5, 0.2, 0}, window, scene.flow_impositions, step, *integrator,
+  return follow_waves({{0}, 1, 0.5, 0.3, 0}, window, scene.flow_impositions, step, *integrator,
                       system, done);
 }
 
@@ -169,7 +169,7 @@ TransportScene ideal_transport_scene(unsigned effort) {
   // Sound wants waves longer than the 3 units of length that a particle flies.
   scene.flow_length = 30, scene.flow_width = 4.2;
   scene.flow_window = 110;
-  scene.flow_impositions = 3;
+  scene.flow_impositions = 4;
   scene.sound_guess = 0.75;
   scene.replicas = 6 * effort;
   return scene;

@@ -21,7 +21,7 @@ struct TransportScene {
   std::vector<double> time_steps;  ///< coarsest first
   /// Mean squared displacements over this window, so many of them, in a cubic box.
   double particle_window = 0;
-  unsigned particle_windows = 2;
+  unsigned particle_windows = 4;
   double cube_side = 0;
   /// A temperature wave in the cubic box: how long it is followed, how often imposed a replica.
   double heat_window = 0;
