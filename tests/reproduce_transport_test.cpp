@@ -102,7 +102,7 @@ TEST(MethodsTransport, AConsistentMethodFarOffIsLeftOutOfTheReference) {
 
 TEST(MethodsTransport, RunsThatBreakAreToldWithTheirCause) {
   auto records = sound_records();
-  const std::string cell = "ideal fluid, averaged-drift, step 0.08";
+  const std::string cell = "ideal fluid, averaged-drift, step 0.04";
   records[cell] = {{"runs", 6},
                    {"failed", 6},
                    {"cause", "negative internal energy"},
