@@ -20,6 +20,7 @@ enum class Purpose : std::uint8_t {
   initial_position = 4,
   monte_carlo = 5,
   pair_uniform = 6,
+  slab_energy = 7,
 };
 
 /// A uniform random bit generator (64 bits a call) over one key and one counter of Philox4x32-10
