@@ -1,0 +1,109 @@
+#include "experiments/flux/border_flux.hpp"
+
+namespace driftless::flux {
+
+Carried& Carried::operator+=(const Carried& other) {
+  internal += other.internal;
+  kinetic += other.kinetic;
+  potential += other.potential;
+  return *this;
+}
+
+Carried BorderFlux::energy_of(System& system, std::size_t place) const {
+  const State& state = system.state();
+  return {state.internal_energy[place] - reference_,
+          0.5 * system.fluid().mass() * state.velocity[place].squaredNorm(),
+          system.potential_shares()[place]};
+}
+
+void BorderFlux::before(System& system) {
+  energy_.resize(system.size());
+  inside_.resize(system.size());
+  for (std::size_t i = 0; i < system.size(); ++i) {
+    energy_[i] = energy_of(system, i);
+    inside_[i] = inside(system.state().position[i]);
+  }
+}
+
+void BorderFlux::after(System& system) {
+  double gained_inside = 0, gained_outside = 0;
+  for (std::size_t i = 0; i < system.size(); ++i) {
+    const Carried now = energy_of(system, i);
+    const bool is_inside = inside(system.state().position[i]), was_inside = inside_[i] != 0;
+    const double gain = now.total() - energy_[i].total();
+    const double share = 0.5 * ((is_inside ? 1 : 0) + (was_inside ? 1 : 0));
+    gained_inside += share * gain;
+    gained_outside += (1 - share) * gain;
+    if (is_inside == was_inside) continue;
+    const Carried mean{0.5 * (energy_[i].internal + now.internal),
+                       0.5 * (energy_[i].kinetic + now.kinetic),
+                       0.5 * (energy_[i].potential + now.potential)};
+    (was_inside ? crossed_.by_leaving : crossed_.by_entering) += mean;
+    ++(was_inside ? crossed_.leaving : crossed_.entering);
+  }
+  crossed_.pairs += 0.5 * (gained_outside - gained_inside);
+  crossed_.created += gained_outside + gained_inside;
+}
+
+Crossed BorderFlux::take() {
+  const Crossed crossed = crossed_;
+  crossed_ = {};
+  return crossed;
+}
+
+double BorderFlux::energy_inside(System& system) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < system.size(); ++i) {
+    if (inside(system.state().position[i])) sum += energy_of(system, i).total();
+  }
+  return sum;
+}
+
+namespace {
+
+/// What the particles outside the region gain per unit time: of a pair on one side the gains
+/// cancel.
+template <class Kernel>
+double gain_outside(System& system, int axis, const Slab& region, const Kernel& kernel) {
+  Exchange rate;
+  system.accumulate(kernel, rate);
+  const State& state = system.state();
+  double gain = 0;
+  for (std::size_t i = 0; i < system.size(); ++i) {
+    if (region.contains(state.position[i][axis])) continue;
+    gain += rate.energy[i] + rate.momentum[i].dot(state.velocity[i]);
+  }
+  return gain;
+}
+
+}  // namespace
+
+PairRates pair_rates(System& system, int axis, const Slab& region) {
+  const Fluid& fluid = system.fluid();
+  PairRates rates;
+  if (fluid.has_conduction()) {
+    rates.conduction = gain_outside(system, axis, region, [&](const auto& pair) {
+      const auto law = fluid.conduction(pair);
+      const auto heat = law.rate + law.induced;
+      return Transfer{0 * heat, heat, -heat};
+    });
+  }
+  const auto work_of = [](const auto& force, const auto& pair) {
+    const auto paid = -0.5 * force * pair.v;
+    return Transfer{force, paid, paid};
+  };
+  if (fluid.has_friction()) {
+    rates.work_of_friction = gain_outside(system, axis, region, [&](const auto& pair) {
+      const auto law = fluid.friction(pair);
+      return work_of(-(law.friction + law.induced) * pair.v, pair);
+    });
+  }
+  if (fluid.has_repulsion()) {
+    rates.work_of_repulsion = gain_outside(system, axis, region, [&](const auto& pair) {
+      return work_of(fluid.repulsive_force(pair.r), pair);
+    });
+  }
+  return rates;
+}
+
+}  // namespace driftless::flux
