@@ -8,7 +8,11 @@
   EXPERIMENT(avalos_mackie_1999_viscosity)    \
   EXPERIMENT(marsh_coveney_entropy)           \
   EXPERIMENT(methods_transport)               \
-  EXPERIMENT(soleymani_2020_figure_1)
+  EXPERIMENT(soleymani_2020_figure_1)         \
+  EXPERIMENT(soleymani_2020_figure_4)         \
+  EXPERIMENT(soleymani_2020_figure_8)         \
+  EXPERIMENT(soleymani_2020_figures_2_3)      \
+  EXPERIMENT(soleymani_2020_figures_5_6)
 
 namespace driftless::reproduce {
 

@@ -1,0 +1,139 @@
+#include "experiments/reproduce/soleymani_2020.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace driftless::reproduce::so20 {
+
+using nlohmann::json;
+
+std::string Combination::name() const {
+  const std::string heat =
+      heat_form == HeatForm::temperature ? "temperature" : "inverse-temperature";
+  return (repulsion == 0 ? "no repulsion" : fmt::format("repulsion a = {:g}", repulsion)) +
+         ", heat form " + heat;
+}
+
+const std::vector<Combination>& combinations() {
+  static const std::vector<Combination> all = {{0, HeatForm::inverse_temperature},
+                                               {0, HeatForm::temperature},
+                                               {25, HeatForm::inverse_temperature},
+                                               {25, HeatForm::temperature}};
+  return all;
+}
+
+FluidParameters fluid_of(const Combination& combination) {
+  return {.boltzmann = 1,
+          .mass = 1,
+          .temperature = 1,
+          .heat_capacity = 60,
+          .repulsion = combination.repulsion,
+          .repulsion_range = 1,
+          .friction = 4.5,
+          .friction_closure = FrictionClosure::noise,
+          .friction_range = 1,
+          .conduction = 300,
+          .heat_form = combination.heat_form,
+          .heat_range = 1,
+          .weight_exponent = 2};
+}
+
+flux::PeriodicFluid box_of(const Combination& combination, const std::string& method,
+                           const Conditions& conditions) {
+  flux::PeriodicFluid fluid;
+  fluid.fluid = fluid_of(combination);
+  fluid.lengths = conditions.effort == Effort::quick ? Vector(4, 4, 14) : Vector(6, 6, 20);
+  fluid.method = method;
+  fluid.seed = conditions.seed;
+  return fluid;
+}
+
+flux::SlabRun slabs_of(const flux::PeriodicFluid& fluid, double heat_flux, Effort effort) {
+  flux::SlabRun run;
+  run.fluid = fluid;
+  run.heat_flux = heat_flux;
+  const double length = fluid.lengths[2];
+  run.bins = static_cast<std::size_t>(std::llround(2 * length));
+  // About seven relaxation times of the longest wave of temperature.
+  run.settle = std::round(0.4 * length * length);
+  run.duration = effort == Effort::quick ? 150 : 800;
+  return run;
+}
+
+double equilibrium_duration(Effort effort) { return effort == Effort::quick ? 36 : 240; }
+
+double cost_of(const flux::PeriodicFluid& fluid, double duration) {
+  return 6e-7 * static_cast<double>(fluid.particles()) * duration / fluid.step;
+}
+
+json or_failure(const std::function<json()>& work) {
+  try {
+    return work();
+  } catch (const StepFailure& failure) {
+    return {{"failure", to_string(failure.cause())}};
+  }
+}
+
+bool failed(const json& record) { return record.contains("failure"); }
+
+Interval interval_of(const json& estimate) {
+  const double mean = estimate.at("mean");
+  // An infinite error is null in JSON.
+  const auto& error = estimate.at("error");
+  const double half = interval_quantile * (error.is_null() ? HUGE_VAL : error.get<double>());
+  return {mean, mean - half, mean + half};
+}
+
+Interval scaled(const Interval& interval, double factor) {
+  const Interval scaled{interval.value * factor, interval.low * factor, interval.high * factor};
+  return factor < 0 ? Interval{scaled.value, scaled.high, scaled.low} : scaled;
+}
+
+namespace {
+
+Interval with_relative_errors(double value, const Interval& one, const Interval& other) {
+  const auto relative = [](const Interval& i) { return (i.high - i.low) / (2 * i.value); };
+  const double half = std::abs(value) * std::hypot(relative(one), relative(other));
+  return {value, value - half, value + half};
+}
+
+}  // namespace
+
+Interval product(const Interval& one, const Interval& other) {
+  return with_relative_errors(one.value * other.value, one, other);
+}
+
+Interval ratio(const Interval& one, const Interval& other) {
+  return with_relative_errors(one.value / other.value, one, other);
+}
+
+judge::Point point_of(double x, const Interval& interval) {
+  return {x, interval.value, interval.low, interval.high};
+}
+
+Interval exactly(double value) { return {value, value, value}; }
+
+std::string setting_of(const std::string& name, const std::string& method,
+                       const std::string& more) {
+  return fmt::format("{}; {}, step 0.01{}{}", name, method, more.empty() ? "" : "; ", more);
+}
+
+std::vector<std::string> common_remarks(const Conditions& conditions) {
+  const auto fluid = box_of(combinations().front(), published, conditions);
+  const auto run = slabs_of(fluid, 1, conditions.effort);
+  return {
+      "The paper's parameters are not known to us. Chosen: m = k = r_c = 1, density 3, mean "
+      "temperature 1, friction 4.5 at T = 1 with the noise closure, heat capacity 60 k, conduction "
+      "300 (so that conduction and diffusion carry comparable heat), weights (1 - r)^2, repulsion "
+      "a = 0 or 25, time step 0.01. A repulsion that depends on temperature is left out.",
+      fmt::format("Periodic box of {:g} x {:g} x {:g}; hot and cold slab of thickness 1 across z, "
+                  "a quarter and three quarters up the box. Every step the internal energies of "
+                  "the hot slab receive and those of the cold slab give the same heat, shared "
+                  "equally by a slab's particles; energy in is energy stored to rounding.",
+                  fluid.lengths[0], fluid.lengths[1], fluid.lengths[2]),
+      fmt::format("Measured for {:g} units of time after {:g}; errors count autocorrelation.",
+                  run.duration, run.settle)};
+}
+
+}  // namespace driftless::reproduce::so20

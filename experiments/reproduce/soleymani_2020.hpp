@@ -1,0 +1,68 @@
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/flux/equilibrium_run.hpp"
+#include "experiments/flux/slab_run.hpp"
+#include "experiments/reproduce/experiment.hpp"
+
+/// What the experiments of Soleymani, Ripoll, Gompper and Fedosov, J. Chem. Phys. 152, 064112
+/// (2020), [So20], share. The paper's parameters are not known to us: these are ours.
+namespace driftless::reproduce::so20 {
+
+inline constexpr const char* published = "isoenergetic-verlet";
+inline constexpr const char* contrast = "shardlow-s1";
+
+/// Repulsion and heat form, of which the paper combines several.
+struct Combination {
+  double repulsion;
+  HeatForm heat_form;
+  std::string name() const;
+};
+/// Without repulsion and with a constant one, each with both heat forms.
+const std::vector<Combination>& combinations();
+
+/// The fluid of a combination: m = k = r_c = 1, friction 4.5 at T = 1 with the noise closure, heat
+/// capacity 60, conduction 300, weights (1 - r)^2.
+FluidParameters fluid_of(const Combination& combination);
+
+/// That fluid in a box along z, at density 3 and T = 1, with a time step of 0.01.
+flux::PeriodicFluid box_of(const Combination& combination, const std::string& method,
+                           const Conditions& conditions);
+
+/// Between slabs, long enough for the temperatures to have followed, measured for longer if `full`.
+flux::SlabRun slabs_of(const flux::PeriodicFluid& fluid, double heat_flux, Effort effort);
+
+/// How long an equilibrium run is.
+double equilibrium_duration(Effort effort);
+
+/// Seconds that a run of so many units of time takes, about.
+double cost_of(const flux::PeriodicFluid& fluid, double duration);
+
+/// `work`'s record, or {"failure"} if the method fails.
+nlohmann::json or_failure(const std::function<nlohmann::json()>& work);
+bool failed(const nlohmann::json& record);
+
+/// Of an estimate {"mean", "error"}.
+Interval interval_of(const nlohmann::json& estimate);
+/// Value and interval in other units.
+Interval scaled(const Interval& interval, double factor);
+/// Of independent numbers, first order in their errors.
+Interval product(const Interval& one, const Interval& other);
+Interval ratio(const Interval& one, const Interval& other);
+
+judge::Point point_of(double x, const Interval& interval);
+/// An exact value.
+Interval exactly(double value);
+
+/// What the setting of a row says of the fluid's run.
+std::string setting_of(const std::string& name, const std::string& method,
+                       const std::string& more = "");
+
+/// What was chosen for all of these experiments.
+std::vector<std::string> common_remarks(const Conditions& conditions);
+
+}  // namespace driftless::reproduce::so20
