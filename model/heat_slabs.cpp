@@ -78,11 +78,33 @@ std::optional<Partners> partners(const HeatSlabs& slabs, const State& state, Val
 
 /// The canonical law of an internal energy: gamma of shape phi/k + 1 and scale k T (Mackie, Bonet
 /// Avalos and Navas 1999, eq. 3.21); phi T where nothing fluctuates.
-double draw_energy(const Fluid& fluid, double temperature, NoiseStream stream) {
-  if (!fluid.fluctuates()) return fluid.internal_energy(temperature);
-  const double shape = fluid.parameters().heat_capacity / fluid.boltzmann() + 1;
-  boost::random::gamma_distribution<double> gamma(shape);
-  return fluid.boltzmann() * temperature * gamma(stream);
+double draw_energy(const EquationOfState& state, double boltzmann, double temperature,
+                   NoiseStream stream) {
+  const double mean = state.internal_energy(temperature);
+  if (boltzmann == 0) return mean;
+  boost::random::gamma_distribution<double> gamma(mean / (boltzmann * temperature) + 1);
+  return boltzmann * temperature * gamma(stream);
+}
+
+/// Books in the system that its driver has given heat.
+void book(System& system, double heat) {
+  Exchange given;
+  given.surroundings[driver_place].energy = -heat;
+  system.give_surroundings(given, 1);
+}
+
+void refuse_fluid(const Fluid& fluid, SlabDrive drive) {
+  if (drive != SlabDrive::velocity_exchange) {
+    if (!fluid.isothermal()) return;
+    throw std::invalid_argument(
+        "heat slabs: an isothermal fluid has no internal energies that slabs could change");
+  }
+  for (std::size_t species = 1; species < fluid.species(); ++species) {
+    if (fluid.mass(species) == fluid.mass()) continue;
+    refuse("the mass of species " + std::to_string(species), fluid.mass(species),
+           "must be that of the others, " + std::to_string(fluid.mass()) +
+               ", as an exchange of velocities would change the momentum");
+  }
 }
 
 }  // namespace
@@ -98,14 +120,17 @@ SlabHeater::SlabHeater(const HeatSlabs& slabs, const Fluid& fluid, const Box& bo
            "the slabs must not overlap and the hot one ends at " + std::to_string(slabs.hot.to));
   }
   check_drive(slabs);
-  if (fluid.isothermal() && slabs.drive != SlabDrive::velocity_exchange) {
-    throw std::invalid_argument(
-        "heat slabs: an isothermal fluid has no internal energies that slabs could change");
-  }
+  refuse_fluid(fluid, slabs.drive);
 }
 
 void SlabHeater::act(System& system, double duration) {
   if (duration == 0) return;
+  const double given_before = given();
+  drive(system, duration);
+  book(system, given() - given_before);
+}
+
+void SlabHeater::drive(System& system, double duration) {
   if (slabs_.drive == SlabDrive::heat_rate) {
     give_heat(system, owed_ + slabs_.rate * duration);
     return;
@@ -190,7 +215,7 @@ void SlabHeater::draw_energies(System& system) {
   std::vector<double> drawn = state.internal_energy;
   const auto draw = [&](const Slab& slab, double temperature, double& given) {
     for (const std::size_t i : places_in(slab, slabs_.axis, state)) {
-      drawn[i] = draw_energy(system.fluid(), temperature,
+      drawn[i] = draw_energy(system.equation_of_state(i), system.fluid().boltzmann(), temperature,
                              noise_.particle_stream(state.id[i], Purpose::slab_energy));
       given += drawn[i] - state.internal_energy[i];
     }

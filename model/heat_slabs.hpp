@@ -42,12 +42,13 @@ struct HeatSlabs {
   double period = 0;  ///< of all but `heat_rate`: time from one act to the next; 0: at every call
 };
 
-/// Drives heat through a system, between its steps, and books it.
+/// Drives heat through a system, between its steps, and books it: here by slab and, as what the
+/// driver has received, in the system's surroundings.
 class SlabHeater {
  public:
   /// Noise is that of the draws of `temperatures`. Throws std::invalid_argument naming the
   /// parameter, its value and the allowed range; so too if an isothermal fluid is to be driven by
-  /// internal energies, which it does not have.
+  /// internal energies, which it does not have, or species of different masses by their velocities.
   SlabHeater(const HeatSlabs& slabs, const Fluid& fluid, const Box& box, const Noise& noise);
 
   /// What the slabs do after the system has gone on by so long, at the positions as they are; of no
@@ -72,6 +73,7 @@ class SlabHeater {
   void load(const std::vector<double>& saved);
 
  private:
+  void drive(System& system, double duration);
   void give_heat(System& system, double heat);
   void exchange_velocities(System& system);
   void exchange_energies(System& system);

@@ -55,6 +55,8 @@ Balance balance(SlabDrive drive, double leak = 0) {
     }
     const double stored = system.total_energy() - start;
     found.worst = std::max(found.worst, std::abs(stored - slabs.given()));
+    const double driver = system.state().surroundings[driver_place].energy;
+    found.worst = std::max(found.worst, std::abs(stored + driver));
     found.moved = std::abs(slabs.given_to_hot());
   }
   return found;

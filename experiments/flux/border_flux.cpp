@@ -12,7 +12,7 @@ Carried& Carried::operator+=(const Carried& other) {
 Carried BorderFlux::energy_of(System& system, std::size_t place) const {
   const State& state = system.state();
   return {state.internal_energy[place] - reference_,
-          0.5 * system.fluid().mass() * state.velocity[place].squaredNorm(),
+          0.5 * system.mass(place) * state.velocity[place].squaredNorm(),
           system.potential_shares()[place]};
 }
 
@@ -100,7 +100,7 @@ PairRates pair_rates(System& system, int axis, const Slab& region) {
   }
   if (fluid.has_repulsion()) {
     rates.work_of_repulsion = gain_outside(system, axis, region, [&](const auto& pair) {
-      return work_of(fluid.repulsive_force(pair.r), pair);
+      return work_of(fluid.repulsive_force(pair), pair);
     });
   }
   return rates;

@@ -81,10 +81,15 @@ double time_to_e(const std::vector<double>& c, double interval) {
   return window;
 }
 
-/// Means over the blocks of a run.
+/// Means over a run: of series in time, and of values of blocks that are long enough to count as
+/// independent.
 class Blocks {
  public:
   void add(const std::string& key, double value) { values_[key].push_back(value); }
+  void add_independent(const std::string& key, double value) {
+    add(key, value);
+    independent_[key].push_back(Eigen::VectorXd::Constant(1, value));
+  }
   double mean(const std::string& key) const {
     double sum = 0;
     for (const double value : values_.at(key)) sum += value;
@@ -95,13 +100,16 @@ class Blocks {
     for (const auto& [key, values] : values_) {
       const Eigen::VectorXd series = Eigen::Map<const Eigen::VectorXd>(
           values.data(), static_cast<Eigen::Index>(values.size()));
-      all[key] = to_record(estimate_mean({series}));
+      const auto apart = independent_.find(key);
+      all[key] = to_record(apart == independent_.end() ? estimate_mean({series})
+                                                       : estimate_mean(apart->second));
     }
     return all;
   }
 
  private:
   std::map<std::string, std::vector<double>> values_;
+  std::map<std::string, std::vector<Eigen::VectorXd>> independent_;
 };
 
 void add_temperatures(System& system, Blocks& blocks) {
@@ -192,10 +200,10 @@ json run_in_equilibrium(const PeriodicFluid& fluid, double duration, std::size_t
     for (std::size_t lag = 0; lag < c.size(); ++lag) {
       mean[lag] += c[lag] / static_cast<double>(count);
     }
-    blocks.add("collision_time", integral(c, interval, 0) / c.front());
-    blocks.add("time_to_e", time_to_e(c, interval));
-    blocks.add("diffusion", integral(c, interval, 0));
-    blocks.add("heat_diffusion", integral(c, interval, blocks.mean("heat_rate")));
+    blocks.add_independent("collision_time", integral(c, interval, 0) / c.front());
+    blocks.add_independent("time_to_e", time_to_e(c, interval));
+    blocks.add_independent("diffusion", integral(c, interval, 0));
+    blocks.add_independent("heat_diffusion", integral(c, interval, blocks.mean("heat_rate")));
   }
   json record = blocks.record();
   for (std::size_t lag = 0; lag < mean.size(); ++lag) {

@@ -38,7 +38,8 @@ Conductivity predicted_conductivity(const FluidParameters& fluid, double density
 ///   "diffusion": the integral of the autocorrelation itself; "heat_diffusion": D_u, above;
 ///   "temperature": the kinetic one; "internal_temperature"; and the means of pair_sums():
 ///       "collision_rate", "heat_rate", "conduction", "pair_viscosity".
-/// Errors are from `blocks` parts of the run. Throws StepFailure.
+/// Errors of the first four are from `blocks` parts of the run, which should be longer than the
+/// autocorrelation; those of the others count it. Throws StepFailure.
 nlohmann::json run_in_equilibrium(const PeriodicFluid& fluid, double duration,
                                   std::size_t blocks = 12);
 

@@ -22,8 +22,9 @@ void Profile::sample(const System& system) {
     const auto bin =
         std::min(bins_ - 1, static_cast<std::size_t>(state.position[i][axis_] / width_));
     row[count * bins_ + bin] += 1;
-    row[inverse_temperature * bins_ + bin] += 1 / fluid.temperature(state.internal_energy[i]);
-    row[kinetic * bins_ + bin] += 0.5 * fluid.mass() * state.velocity[i].squaredNorm();
+    row[inverse_temperature * bins_ + bin] +=
+        1 / system.equation_of_state(i).temperature(state.internal_energy[i]);
+    row[kinetic * bins_ + bin] += 0.5 * system.mass(i) * state.velocity[i].squaredNorm();
   }
   rows_.push_back(std::move(row));
 }

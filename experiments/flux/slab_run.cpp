@@ -12,7 +12,8 @@ namespace {
 using nlohmann::json;
 
 constexpr int z_axis = 2;
-constexpr double sample_period = 0.1;  ///< of profiles and of the laws' mean rates
+constexpr double sample_period = 0.1;  ///< of profiles
+constexpr double law_period = 0.05;    ///< of the laws' mean rates
 constexpr double block = 0.5;          ///< times that fluxes are summed over
 
 HeatSlabs slabs_of(const SlabRun& run) {
@@ -152,7 +153,8 @@ json run_between_slabs(const SlabRun& run) {
 
   Profile profile(system.box(), z_axis, run.bins);
   PlaneFluxes planes(run, system);
-  const auto samples = fluid.steps_in(sample_period), blocks = fluid.steps_in(block);
+  const auto samples = fluid.steps_in(sample_period), blocks = fluid.steps_in(block),
+             laws = fluid.steps_in(law_period);
   if (run.planes) planes.border().before(system);
   std::uint64_t step = 0;
   fluid.advance(run.duration, [&] {
@@ -160,8 +162,8 @@ json run_between_slabs(const SlabRun& run) {
     if (run.planes) planes.border().after(system);
     if (step % samples == 0) {
       profile.sample(system);
-      if (run.planes) planes.sample_laws(system);
     }
+    if (run.planes && step % laws == 0) planes.sample_laws(system);
     heat();
     if (run.planes && step % blocks == 0) planes.end_block(system, block);
     if (run.planes) planes.border().before(system);
