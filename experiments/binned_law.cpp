@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/erf.hpp>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -65,6 +66,20 @@ BinnedLaw BinnedLaw::normal(std::size_t bins) {
     edges[i] = -edge;
     edges[bins - i] = edge;
   }
+  return BinnedLaw(std::move(edges));
+}
+
+BinnedLaw BinnedLaw::gamma(double shape, std::size_t bins) {
+  if (!(shape > 0.0) || !std::isfinite(shape)) {
+    throw std::invalid_argument("a Gamma law needs a positive shape");
+  }
+  check(bins);
+  std::vector<double> edges(bins + 1);
+  for (std::size_t i = 1; i < bins; ++i) {
+    const double below = static_cast<double>(i) / static_cast<double>(bins);
+    edges[i] = boost::math::gamma_p_inv(shape, below);
+  }
+  edges.back() = std::numeric_limits<double>::infinity();
   return BinnedLaw(std::move(edges));
 }
 

@@ -23,6 +23,11 @@ class BinnedLaw {
   /// infinite. Throws std::invalid_argument unless there are two bins or more.
   static BinnedLaw normal(std::size_t bins = 256);
 
+  /// The Gamma law of a shape: an internal energy under a bath, in units of k T. Its last edge is
+  /// infinite. Throws std::invalid_argument unless the shape is positive and there are two bins or
+  /// more.
+  static BinnedLaw gamma(double shape, std::size_t bins = 256);
+
   /// Bin of a sample, from 0: edges()[bin] <= sample < edges()[bin + 1]. Samples outside the law's
   /// interval go to its end bins; one that is not a number, to bin 0.
   std::size_t bin(double sample) const;

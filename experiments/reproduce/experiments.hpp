@@ -6,6 +6,10 @@
 #define DRIFTLESS_EXPERIMENTS(EXPERIMENT)     \
   EXPERIMENT(avalos_mackie_1999_conductivity) \
   EXPERIMENT(avalos_mackie_1999_viscosity)    \
+  EXPERIMENT(mackie_1999_figure_3)            \
+  EXPERIMENT(mackie_1999_figures_1_2)         \
+  EXPERIMENT(mackie_1999_figures_4_6)         \
+  EXPERIMENT(mackie_1999_walls)               \
   EXPERIMENT(marsh_coveney_entropy)           \
   EXPERIMENT(methods_transport)               \
   EXPERIMENT(soleymani_2020_figure_1)         \
