@@ -56,8 +56,10 @@ double PreparedScene::thermal_kinetic_energy() const {
 }
 
 void PreparedScene::find_law() {
-  // Walls take momentum and heat, and species share energies in other ways.
-  if (!fluid_.fluctuates() || box_.is_bounded() || fluid_.species() > 1) return;
+  // Walls and slabs take momentum and heat, and species share energies in other ways.
+  if (!fluid_.fluctuates() || box_.is_bounded() || fluid_.species() > 1 || scene_.heat_slabs) {
+    return;
+  }
   auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
   // A pair at a fixed distance, or two particles, keep u_i - u_j without conduction; a solid's
   // friction, in few fixed directions, keeps combinations of momenta; without friction nothing ties

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/binned_law.hpp"
+#include "experiments/driven_integrator.hpp"
 #include "experiments/scene.hpp"
 #include "experiments/statistics.hpp"
 
@@ -40,6 +42,11 @@ class PreparedScene {
   /// A system at the start of a replica. The last of several starts off equilibrium.
   System start(unsigned replica) const;
   bool starts_off_equilibrium(unsigned replica) const;
+  /// A method's integrator with the heat slabs of the scene acting after its steps, if it has any.
+  std::unique_ptr<Integrator> driven(std::unique_ptr<Integrator> integrator,
+                                     unsigned replica) const {
+    return driftless::driven(std::move(integrator), scene_, noise(replica));
+  }
 
   /// The law of shares of kinetic plus internal energy, where the scene has an exact one: nothing
   /// without friction and conduction or without internal energies, kinetic energy left out without

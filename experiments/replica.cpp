@@ -12,7 +12,7 @@ namespace {
 class EnergyGuard {
  public:
   EnergyGuard(const PreparedScene& prepared, System& system)
-      : start_(system.total_energy()), allowed_(std::abs(start_)) {
+      : start_(system.energy_with_surroundings()), allowed_(std::abs(start_)) {
     if (!prepared.fluid().isothermal()) return;
     // 40 k T: the kinetic energy of a single degree exceeds that once in exp(40) looks.
     allowed_ += 10 * prepared.thermal_kinetic_energy() + 40 * prepared.energy_unit();
@@ -20,7 +20,7 @@ class EnergyGuard {
   }
   /// Throws StepFailure.
   void check(System& system) const {
-    const double gain = system.total_energy() - start_;
+    const double gain = system.energy_with_surroundings() - start_;
     if ((bath_ ? gain : std::abs(gain)) > allowed_) {
       throw StepFailure(FailureCause::energy_runaway, {});
     }
@@ -42,7 +42,7 @@ ReplicaResult run_replica(const PreparedScene& prepared, const Study& study,
                           const MethodChoice& choice, double time_step, unsigned replica,
                           unsigned threads) {
   const StepPlan plan(study, time_step);
-  const auto integrator = find_method(choice.name)->make(choice.options);
+  const auto integrator = prepared.driven(find_method(choice.name)->make(choice.options), replica);
   System system = prepared.start(replica);
   system.set_threads(threads);
   ReplicaResult result;

@@ -16,15 +16,6 @@ std::vector<Block> empty_blocks(unsigned replica, std::size_t bins) {
   return blocks;
 }
 
-/// What fluid and surroundings have together is what is kept.
-double energy_with_surroundings(System& system) {
-  return system.total_energy() + total(system.motion().surroundings).energy;
-}
-
-Vector momentum_with_surroundings(const System& system) {
-  return system.momentum() + total(system.motion().surroundings).momentum;
-}
-
 // The radial distribution needs no more snapshots than this from a replica.
 constexpr std::size_t distance_snapshots = 64;
 
@@ -39,8 +30,8 @@ Sampler::Sampler(const PreparedScene& prepared, System& system, unsigned replica
                  std::size_t samples)
     : prepared_(prepared),
       distances_(prepared.box(), distance_range(prepared), system.size()),
-      first_energy_(energy_with_surroundings(system)),
-      first_momentum_(momentum_with_surroundings(system)),
+      first_energy_(system.energy_with_surroundings()),
+      first_momentum_(system.momentum_with_surroundings()),
       island_size_(prepared.island_size()) {
   const auto exact = prepared.reference("internal_energy_mean");
   mean_energy_ = exact ? exact->value : 0;
@@ -153,9 +144,9 @@ void Sampler::take(System& system, double time) {
   const double unit = prepared_.energy_unit();
   record_.energy.times[static_cast<Eigen::Index>(taken_)] = time;
   record_.energy.energies[static_cast<Eigen::Index>(taken_)] =
-      (energy_with_surroundings(system) - first_energy_) / (particles * unit);
+      (system.energy_with_surroundings() - first_energy_) / (particles * unit);
   record_.momentum_error = std::max(record_.momentum_error,
-                                    (momentum_with_surroundings(system) - first_momentum_).norm() /
+                                    (system.momentum_with_surroundings() - first_momentum_).norm() /
                                         particles / std::sqrt(f.mass * unit));
   take_distances(state);
   ++taken_;

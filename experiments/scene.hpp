@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/heat_slabs.hpp"
 #include "model/initial.hpp"
 #include "model/system.hpp"
 
@@ -26,6 +27,7 @@ struct Scene {
   Vector sides = Vector::Ones();  ///< of the box, relative to each other
   std::array<std::optional<Wall>, 6> walls = {};
   Vector gravity = Vector::Zero();
+  std::optional<HeatSlabs> heat_slabs = {};  ///< acting after every step
   /// Share of the particles that each species beside the first has.
   std::vector<double> further_shares = {};
   bool frozen = false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/driven_integrator.hpp"
 #include "experiments/scene_keys.hpp"
 
 namespace driftless {
@@ -58,6 +59,11 @@ void check_surroundings(const Scene& scene, const Fluid& fluid, const Location& 
     (void)fluid.within(scene_box(scene));
   } catch (const std::invalid_argument& error) {
     location.member("walls").refuse(std::string("do not fit the scene: ") + error.what());
+  }
+  try {
+    if (scene.heat_slabs) (void)driven(nullptr, scene, Noise(0, 0));
+  } catch (const std::invalid_argument& error) {
+    location.member("heat_slabs").refuse(std::string("do not fit the scene: ") + error.what());
   }
   double shares = 0;
   for (const double share : scene.further_shares) shares += share;

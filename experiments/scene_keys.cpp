@@ -79,6 +79,78 @@ void set_walls(Scene& scene, const json& object) {
   }
 }
 
+const std::vector<std::pair<const char*, SlabDrive>>& slab_drives() {
+  static const std::vector<std::pair<const char*, SlabDrive>> drives = {
+      {"heat-rate", SlabDrive::heat_rate},
+      {"velocity-exchange", SlabDrive::velocity_exchange},
+      {"energy-exchange", SlabDrive::energy_exchange},
+      {"temperatures", SlabDrive::temperatures}};
+  return drives;
+}
+
+const std::vector<std::pair<const char*, double HeatSlabs::*>>& slab_numbers() {
+  static const std::vector<std::pair<const char*, double HeatSlabs::*>> numbers = {
+      {"rate", &HeatSlabs::rate},
+      {"hot_temperature", &HeatSlabs::hot_temperature},
+      {"cold_temperature", &HeatSlabs::cold_temperature},
+      {"period", &HeatSlabs::period}};
+  return numbers;
+}
+
+ValueRule slabs_rule() {
+  std::vector<std::string> drives;
+  for (const auto& [name, drive] : slab_drives()) drives.emplace_back(name);
+  const auto place = ValueRule::not_negative(), positive = ValueRule::positive();
+  return ValueRule::object(
+      "heat_slabs",
+      {{"drive", ValueRule::word(drives), true, "what drives the heat"},
+       {"axis", ValueRule::word({"x", "y", "z"}), true, "that the slabs are normal to"},
+       {"hot",
+        ValueRule::object("a slab", {{"from", place, true, "where it begins"},
+                                     {"to", positive, true, "where it ends"}}),
+        true, "the slab that receives"},
+       {"cold",
+        ValueRule::object("a slab", {{"from", place, true, "where it begins"},
+                                     {"to", positive, true, "where it ends"}}),
+        true, "the slab that gives"},
+       {"rate", positive, false, "of heat-rate: energy per unit time"},
+       {"hot_temperature", positive, false, "of temperatures"},
+       {"cold_temperature", positive, false, "of temperatures"},
+       {"period", place, false, "time from one exchange to the next; 0: every step"}});
+}
+
+json heat_slabs_of(const Scene& scene) {
+  if (!scene.heat_slabs) return nullptr;
+  const HeatSlabs& slabs = *scene.heat_slabs;
+  json object = {{"axis", std::string(1, static_cast<char>('x' + slabs.axis))},
+                 {"hot", {{"from", slabs.hot.from}, {"to", slabs.hot.to}}},
+                 {"cold", {{"from", slabs.cold.from}, {"to", slabs.cold.to}}}};
+  for (const auto& [name, drive] : slab_drives()) {
+    if (drive == slabs.drive) object["drive"] = name;
+  }
+  for (const auto& [name, member] : slab_numbers()) {
+    if (slabs.*member != 0) object[name] = slabs.*member;
+  }
+  return object;
+}
+
+void set_heat_slabs(Scene& scene, const json& object) {
+  HeatSlabs slabs;
+  for (const auto& [name, drive] : slab_drives()) {
+    if (object["drive"] == name) slabs.drive = drive;
+  }
+  slabs.axis = object["axis"].get<std::string>()[0] - 'x';
+  const auto slab = [](const json& range) {
+    return Slab{range["from"].get<double>(), range["to"].get<double>()};
+  };
+  slabs.hot = slab(object["hot"]);
+  slabs.cold = slab(object["cold"]);
+  for (const auto& [name, member] : slab_numbers()) {
+    if (object.contains(name)) slabs.*member = object[name].get<double>();
+  }
+  scene.heat_slabs = slabs;
+}
+
 json species_of(const Scene& scene) {
   json list = json::array();
   for (std::size_t n = 0; n < scene.further_shares.size(); ++n) {
@@ -219,6 +291,9 @@ std::string_view of_placed_fluids(const Scene& scene) {
       scene.fluid.has_repulsion() && scene.fluid.boltzmann > 0 && starts_in_law(scene);
   return equilibrium ? "a fluid with repulsion starts from its equilibrium" : of_fluids(scene);
 }
+std::string_view of_slabs(const Scene& scene) {
+  return scene.heat_slabs ? of_fluids(scene) : "there are no heat slabs";
+}
 std::string_view of_species(const Scene& scene) {
   return scene.fluid.further_species.empty() ? "there is one species alone" : "";
 }
@@ -323,6 +398,8 @@ std::vector<SceneKey> keys_of_the_surroundings() {
       {"gravity", ValueRule::vector(), "acceleration [x, y, z], along one axis that has walls",
        [](const Scene& scene) { return to_list(scene.gravity); },
        [](Scene& scene, const json& value) { scene.gravity = to_vector(value); }, of_fluids},
+      {"heat_slabs", slabs_rule(), "two slabs that drive heat from one to the other", heat_slabs_of,
+       set_heat_slabs, of_slabs},
   };
 }
 

@@ -136,7 +136,8 @@ std::string simulate(const SimulateArguments& arguments) {
   check_checkpoint(plan, laboratory.observations, checkpoint);
   make_output_folder(simulation.files.folder, "");
 
-  const auto integrator = find_method(simulation.method.name)->make(simulation.method.options);
+  const auto integrator =
+      prepared.driven(find_method(simulation.method.name)->make(simulation.method.options), 0);
   const auto end =
       long_run(laboratory.system, *integrator, plan, laboratory.observations, checkpoint, threads);
   write_results(arguments, simulation, laboratory, end.counters, threads);

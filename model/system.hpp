@@ -115,6 +115,11 @@ class System {
   double potential_energy();
   double total_energy() { return kinetic_energy() + internal_energy() + potential_energy(); }
   Vector momentum() const;
+  /// What fluid and surroundings have together, which is what is kept.
+  double energy_with_surroundings() { return total_energy() + total(state_.surroundings).energy; }
+  Vector momentum_with_surroundings() const {
+    return momentum() + total(state_.surroundings).momentum;
+  }
 
   /// A pair as it lies.
   struct Geometry {
