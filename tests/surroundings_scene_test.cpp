@@ -1,0 +1,134 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "experiments/prepared_scene.hpp"
+#include "experiments/scene_keys.hpp"
+#include "tests/scene_reading.hpp"
+#include "tests/small_system.hpp"
+
+// Scenes with walls, gravity, several species and heat slabs, as they are written and as they run.
+namespace driftless::testing {
+namespace {
+
+using nlohmann::json;
+
+json walled_scene() {
+  return json::parse(R"({
+    "preset": "mackie-1999", "particles": 900, "sides": [2, 1, 1.5], "initial_state": "rest",
+    "walls": {
+      "x_lower": {"temperature": 1.3, "repulsion": 20, "repulsion_range": 0.5, "friction": 1,
+                  "friction_range": 1.24, "conduction": 850, "heat_range": 1.2},
+      "x_upper": {"temperature": 0.9, "friction": 2},
+      "z_lower": {"repulsion": 30}, "z_upper": {"repulsion": 30}
+    },
+    "gravity": [0, 0, -0.01],
+    "species": [{"share": 0.2, "mass": 4}, {"share": 0.1, "heat_capacity": 0.5}],
+    "species_pairs": [{"first": 2, "second": 0, "friction": 3}]
+  })");
+}
+
+json slab_scene() {
+  return json::parse(R"({
+    "preset": "soft-fluid", "particles": 300, "sides": [1, 1, 4], "initial_state": "rest",
+    "heat_slabs": {"drive": "heat-rate", "axis": "z", "hot": {"from": 2, "to": 3},
+                   "cold": {"from": 7, "to": 8}, "rate": 30}
+  })");
+}
+
+void expect_refusal(const json& object, const std::string& part) {
+  EXPECT_NE(refusal_of(object).find(part), std::string::npos) << refusal_of(object);
+}
+
+TEST(WalledScene, IsReadAndWrittenAlike) {
+  for (const auto& object : {walled_scene(), slab_scene()}) {
+    const Scene scene = read(object);
+    json again = scene_parameters(scene);
+    again["preset"] = object["preset"];
+    EXPECT_EQ(scene_parameters(read(again)), scene_parameters(scene));
+  }
+}
+
+TEST(WalledScene, HasTheBoxAndTheSpeciesThatWereAskedFor) {
+  const Scene scene = read(walled_scene());
+  const Box box = scene_box(scene);
+  EXPECT_NEAR(box.volume(), 900, 1e-9);
+  EXPECT_NEAR(box.lengths[0] / box.lengths[1], 2, 1e-12);
+  EXPECT_NEAR(box.lengths[2] / box.lengths[1], 1.5, 1e-12);
+  EXPECT_TRUE(box.is_walled(0) && !box.is_walled(1) && box.is_walled(2));
+  EXPECT_EQ(box.walls[0]->temperature, 1.3);
+  EXPECT_EQ(box.walls[1]->friction, 2);
+  EXPECT_FALSE(box.walls[4]->temperature.has_value());
+  EXPECT_EQ(box.gravity, Vector(0, 0, -0.01));
+  const auto species = scene_species(scene);
+  EXPECT_NEAR(static_cast<double>(std::count(species.begin(), species.end(), 1)), 180, 2);
+  EXPECT_NEAR(static_cast<double>(std::count(species.begin(), species.end(), 2)), 90, 2);
+  const Fluid fluid(scene.fluid);
+  EXPECT_EQ(fluid.mass(1), 4);
+  EXPECT_EQ(fluid.equation_of_state(2).internal_energy(1.0), 25);
+  EXPECT_EQ(fluid.law(0, 2).friction(Pair<double>{0.5, 1, 1, 0, 55, 27, 0, 0}).friction, 3);
+}
+
+TEST(WalledScene, StartsAtOneTemperatureAndAtRest) {
+  auto object = walled_scene();
+  object["initial_velocity_spread"] = 0.7;
+  object["initial_state"] = "given";
+  System system = PreparedScene(read(object), 1, 1).start(0);
+  EXPECT_LT(system.momentum().norm(), 1e-9);
+  for (std::size_t i = 0; i < system.size(); ++i) {
+    const double u = system.state().internal_energy[i];
+    EXPECT_NEAR(system.equation_of_state(i).temperature(u), 1.1, 1e-12);
+  }
+}
+
+TEST(WalledScene, RefusesWhatMakesNoSense) {
+  const auto changed = [](json object, const char* pointer, const json& value) {
+    object[json::json_pointer(pointer)] = value;
+    return object;
+  };
+  expect_refusal(changed(walled_scene(), "/walls/x_uper", json::object()),
+                 "walls.x_uper: is no key of walls; did you mean \"x_upper\"?");
+  expect_refusal(changed(walled_scene(), "/walls/x_upper/frictoin", 1),
+                 "walls.x_upper.frictoin: is no key of a wall; did you mean \"friction\"?");
+  expect_refusal(changed(walled_scene(), "/walls/x_upper/friction", -1),
+                 "walls.x_upper.friction: is -1; allowed is a number >= 0");
+  expect_refusal(changed(walled_scene(), "/walls/y_lower", json::object()),
+                 "at one side of the box alone");
+  expect_refusal(changed(walled_scene(), "/gravity", {0, -1, 0}), "along one axis that has walls");
+  expect_refusal(changed(walled_scene(), "/species/0/share", 0.95), "add up to 1.05");
+  expect_refusal(changed(walled_scene(), "/species_pairs/0/first", 3), "number below that");
+  expect_refusal(changed(walled_scene(), "/sides", {1, 0, 1}), "sides");
+  expect_refusal(changed(slab_scene(), "/heat_slabs/drive", "heatrate"),
+                 "did you mean \"heat-rate\"?");
+  expect_refusal(changed(slab_scene(), "/heat_slabs/hot/to", 80), "hot slab");
+}
+
+TEST(DrivenScene, GivesWhatItTakesAndGoesOnWithTheSameBits) {
+  for (const char* drive : {"heat-rate", "energy-exchange", "velocity-exchange", "temperatures"}) {
+    auto object = slab_scene();
+    object["heat_slabs"]["drive"] = drive;
+    object["heat_slabs"]["hot_temperature"] = 1.2;
+    object["heat_slabs"]["cold_temperature"] = 0.8;
+    object["heat_slabs"]["period"] = 0.02;
+    const PreparedScene prepared(read(object), 3, 1);
+    const auto make = [&] {
+      return prepared.driven(
+          find_method("splitting-energy-reinjection")->make({{"reinject_potential", true}}), 0);
+    };
+    System system = prepared.start(0);
+    const double energy = system.energy_with_surroundings();
+    const auto integrator = make();
+    judge::run(*integrator, system, 0.01, 1, 4);
+    const auto saved = integrator->save();
+    System other(prepared.fluid(), prepared.box(), system.state(), Noise(3, 0));
+    const auto restored = make();
+    restored->load(saved);
+    judge::run(*integrator, system, 0.01, 4, 9);
+    judge::run(*restored, other, 0.01, 4, 9);
+    EXPECT_TRUE(judge::same_bits(system.state(), other.state())) << drive;
+    EXPECT_NEAR(system.energy_with_surroundings(), energy, 1e-7) << drive;
+  }
+}
+
+}  // namespace
+}  // namespace driftless::testing
