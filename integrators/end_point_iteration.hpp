@@ -45,15 +45,6 @@ class EndPointRound {
   Exchange exchange_;
 };
 
-/// Whether a noise amplitude follows the internal energies. Where none does, the equations are
-/// explicit: the first round solves them, and another one would find the same bits.
-inline bool amplitudes_follow_energies(const Fluid& fluid) {
-  const auto& f = fluid.parameters();
-  return fluid.fluctuates() &&
-         ((f.has_friction() && f.friction_closure != FrictionClosure::noise) ||
-          (f.has_conduction() && f.heat_form != HeatForm::inverse_temperature));
-}
-
 /// Repeats the round until no u' moves by more than `tolerance` of the mean internal energy, and
 /// finishes the step with the Euler move r' = r + v dt. Throws StepFailure. It stays plain: what
 /// acceleration saves in rounds it costs in work on vectors (tests/benchmark/fixed_point.cpp).
@@ -62,7 +53,9 @@ class EndPointIteration {
   template <class Momentum, class Energy>
   void step(System& system, double dt, double tolerance, Momentum&& momentum, Energy&& energy) {
     constexpr int most_rounds = 100;
-    const bool is_explicit = !amplitudes_follow_energies(system.fluid());
+    // Where no amplitude follows the energies the first round solves the equations: another one
+    // would find the same bits.
+    const bool is_explicit = !system.fluid().noise_follows_energies();
     round_.start(system);
     for (int n = 0; n < most_rounds; ++n) {
       round_.evaluate(system, momentum, energy);

@@ -84,8 +84,16 @@ std::optional<std::string> refusal(const Method& method, const Fluid& fluid) {
   }
   const auto closure = fluid.parameters().friction_closure;
   const auto& built_for = method.closures;
-  const bool suited = std::find(built_for.begin(), built_for.end(), closure) != built_for.end();
-  if (!fluid.has_friction() || suited) return std::nullopt;
+  const auto suits = [&](FrictionClosure wanted) {
+    return std::find(built_for.begin(), built_for.end(), wanted) != built_for.end();
+  };
+  if (fluid.has_friction() && suits(closure) && !suits(FrictionClosure::friction) &&
+      fluid.friction_noise_follows_energies()) {
+    return std::string(method.name) +
+           " is built for friction whose noise does not follow the temperatures, that of this "
+           "scene does";
+  }
+  if (!fluid.has_friction() || suits(closure)) return std::nullopt;
   std::string names;
   for (const auto known : built_for) {
     names += (names.empty() ? "" : " and ") + std::string(to_string(known));

@@ -61,9 +61,7 @@ Transfer<V> shardlow_friction(const Fluid& fluid, const Pair<V>& pair, double dt
 
 /// Without the noise-induced friction the limit is the model only where there is none.
 inline bool shardlow_is_consistent(const Fluid& fluid, bool as_published) {
-  const bool induces =
-      fluid.has_friction() && fluid.parameters().friction_closure == FrictionClosure::friction;
-  return !(as_published && induces);
+  return !(as_published && fluid.friction_noise_follows_energies());
 }
 
 /// Friction of a pair, then its conduction, at dt; in a reverse sweep the other way round.

@@ -65,6 +65,7 @@ struct LinearHeatCapacity {
 struct StatePoint {
   double temperature;
   double internal_energy;
+  bool operator==(const StatePoint&) const = default;
 };
 
 /// The entropy s(u) of one particle and what follows from it: the temperature theta = (ds/du)^-1

@@ -49,7 +49,21 @@ FluidParameters with_bath(FluidParameters parameters) {
   if (!parameters.isothermal) return parameters;
   parameters.friction_closure = FrictionClosure::noise;
   parameters.heat_capacity = 1;
+  parameters.heat_capacity_slope = 0;
+  parameters.equation_of_state.clear();
+  parameters.friction_temperature_exponent = parameters.conduction_temperature_exponent = 0;
   return parameters;
+}
+
+void check_coefficient_laws(const FluidParameters& f) {
+  const auto check = [&f](const char* name, double exponent, const CoefficientLaw& law) {
+    require(law.is_constant() || exponent == 0, name, exponent, "0 where a law is given");
+    if (law.is_constant() || !f.isothermal) return;
+    throw std::invalid_argument(
+        "the law of a coefficient follows temperatures, allowed is none in an isothermal fluid");
+  };
+  check("friction_temperature_exponent", f.friction_temperature_exponent, f.friction_law);
+  check("conduction_temperature_exponent", f.conduction_temperature_exponent, f.conduction_law);
 }
 
 }  // namespace
@@ -69,12 +83,12 @@ Fluid::Fluid(const FluidParameters& parameters) : parameters_(with_bath(paramete
   require(!f.isothermal || !f.has_conduction(), "conduction", f.conduction,
           "0 in an isothermal fluid, whose particles have no heat to exchange");
   require(f.weight_exponent > 0, "weight_exponent", f.weight_exponent, "> 0");
-  partners_.push_back({f.mass, EquationOfState::constant_heat_capacity(f.heat_capacity)});
+  check_coefficient_laws(f);
+  add_partner({f.mass, f.heat_capacity, f.heat_capacity_slope, f.equation_of_state});
   for (const auto& species : f.further_species) {
     require(species.mass > 0, "mass of a species", species.mass, "> 0");
     require(species.heat_capacity > 0, "heat_capacity of a species", species.heat_capacity, "> 0");
-    const double phi = f.isothermal ? 1 : species.heat_capacity;
-    partners_.push_back({species.mass, EquationOfState::constant_heat_capacity(phi)});
+    add_partner(species);
   }
   require(partners_.size() <= 256, "number of species", static_cast<double>(partners_.size()),
           "at most 256");
@@ -85,6 +99,27 @@ Fluid::Fluid(const FluidParameters& parameters) : parameters_(with_bath(paramete
       note_terms(laws_.back());
     }
   }
+}
+
+void Fluid::add_partner(const SpeciesParameters& species) {
+  const auto& f = parameters_;
+  const auto state = [&] {
+    if (f.isothermal) return EquationOfState::constant_heat_capacity(1);
+    if (species.equation_of_state.empty()) {
+      return EquationOfState::linear_heat_capacity(species.heat_capacity,
+                                                   species.heat_capacity_slope, f.temperature);
+    }
+    require(species.heat_capacity_slope == 0, "heat_capacity_slope", species.heat_capacity_slope,
+            "0 where an equation of state is given by points");
+    return EquationOfState::table(species.equation_of_state);
+  };
+  partners_.push_back({species.mass, state()});
+}
+
+bool Fluid::has_constant_heat_capacities() const {
+  return std::all_of(partners_.begin(), partners_.end(), [](const Partner& partner) {
+    return partner.state.has_constant_heat_capacity();
+  });
 }
 
 PairCoefficients Fluid::coefficients(std::size_t species_i, std::size_t species_j) const {
@@ -106,6 +141,9 @@ void Fluid::note_terms(const PairLaw& law) {
   has_repulsion_ = has_repulsion_ || law.has_repulsion();
   has_friction_ = has_friction_ || law.has_friction();
   has_conduction_ = has_conduction_ || law.has_conduction();
+  friction_noise_follows_energies_ =
+      friction_noise_follows_energies_ || law.friction_noise_follows_energies();
+  heat_noise_follows_energies_ = heat_noise_follows_energies_ || law.heat_noise_follows_energies();
 }
 
 double Fluid::range() const {

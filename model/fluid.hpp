@@ -28,6 +28,16 @@ class Fluid {
   double bath_energy() const { return internal_energy(parameters_.temperature); }
   bool fluctuates() const { return parameters_.boltzmann > 0; }
   double boltzmann() const { return parameters_.boltzmann; }
+  /// Whether the friction's noise of any pair, or the noise of anything, follows the internal
+  /// energies: a method then needs what is noise-induced to be consistent.
+  bool friction_noise_follows_energies() const {
+    return fluctuates() && friction_noise_follows_energies_;
+  }
+  bool noise_follows_energies() const {
+    return fluctuates() && (friction_noise_follows_energies_ || heat_noise_follows_energies_);
+  }
+  /// Whether the entropy of every particle is phi ln u.
+  bool has_constant_heat_capacities() const;
 
   std::size_t species() const { return partners_.size(); }
   double mass(std::size_t species = 0) const { return partners_[species].mass; }
@@ -147,6 +157,7 @@ class Fluid {
   }
 
  private:
+  void add_partner(const SpeciesParameters& species);
   PairCoefficients coefficients(std::size_t species_i, std::size_t species_j) const;
   void note_terms(const PairLaw& law);
   void add_wall(const Box& box, std::size_t face);
@@ -157,6 +168,7 @@ class Fluid {
   std::vector<PairLaw> laws_;      ///< of species i and j at i species() + j
   std::vector<std::optional<PairLaw>> boundary_laws_;
   bool has_repulsion_ = false, has_friction_ = false, has_conduction_ = false;
+  bool friction_noise_follows_energies_ = false, heat_noise_follows_energies_ = false;
 };
 
 }  // namespace driftless

@@ -3,6 +3,9 @@
 #include <optional>
 #include <vector>
 
+#include "model/coefficient_law.hpp"
+#include "model/equation_of_state.hpp"
+
 namespace driftless {
 
 /// Which of the two friction coefficients depends on the distance alone (theory of the closures:
@@ -18,6 +21,8 @@ enum class HeatForm { none, inverse_temperature, temperature };
 struct SpeciesParameters {
   double mass = 1;           ///< m > 0
   double heat_capacity = 1;  ///< phi > 0; without meaning in an isothermal fluid
+  double heat_capacity_slope = 0;
+  std::vector<StatePoint> equation_of_state = {};
   bool operator==(const SpeciesParameters&) const = default;
 };
 
@@ -35,7 +40,12 @@ struct FluidParameters {
   double mass = 1;           ///< particle mass m > 0
   double temperature = 1;    ///< T > 0 at which `friction` is quoted; of the bath if isothermal
   double heat_capacity = 1;  ///< phi = du/dtheta > 0 of one particle (s = phi ln u)
-  double repulsion = 0;      ///< a of psi = (a r_c/2)(1 - r/r_c)^2 (Groot and Warren 1997)
+  /// b >= 0 of a heat capacity phi + b (theta - T) (EquationOfState::linear_heat_capacity).
+  double heat_capacity_slope = 0;
+  /// Points of a tabulated u(theta) (EquationOfState::table), in place of the heat capacity; empty
+  /// if there is none.
+  std::vector<StatePoint> equation_of_state = {};
+  double repulsion = 0;  ///< a of psi = (a r_c/2)(1 - r/r_c)^2 (Groot and Warren 1997)
   double repulsion_range = 1;
   double friction = 0;  ///< zeta_0 at temperature T, for either closure
   FrictionClosure friction_closure = FrictionClosure::noise;
@@ -44,6 +54,12 @@ struct FluidParameters {
   HeatForm heat_form = HeatForm::none;
   double heat_range = 1;
   double weight_exponent = 2;  ///< s of w(r) = (1 - r/r_c)^s, for friction and heat
+  /// p of the power (theta_i theta_j/T^2)^(p/2) of the mean temperature that the coefficient which
+  /// the closure, or the heat form, gives is multiplied by; walls share it. With p not 0 every
+  /// noise amplitude follows the energies, that of the closure `noise` too.
+  double friction_temperature_exponent = 0, conduction_temperature_exponent = 0;
+  /// Any other factor in place of the power.
+  CoefficientLaw friction_law = {}, conduction_law = {};
   /// Particles have no internal energy: friction and its noise exchange energy with a bath of the
   /// temperature T, Gamma^2 = 2 k T zeta with zeta = zeta_0 w(r) for either closure [Espanol,
   /// Warren, Europhys. Lett. 30, 191 (1995)]. Nothing conducts, and the heat capacity has no

@@ -72,13 +72,20 @@ double MicrocanonicalLaw::internal_energy_skewness() const {
   return 2 * (other - shape) * std::sqrt(total + 1) / ((total + 2) * std::sqrt(shape * other));
 }
 
+double heat_capacity(const Fluid& fluid) {
+  const auto& f = fluid.parameters();
+  return fluid.has_constant_heat_capacities()
+             ? f.heat_capacity
+             : fluid.heat_capacity(fluid.internal_energy(f.temperature));
+}
+
 MicrocanonicalLaw microcanonical_law(const Fluid& fluid, Layout layout, std::size_t particles) {
   MicrocanonicalLaw law;
   law.particles = island_size(layout, particles);
   law.islands = particles / law.particles;
   law.degrees = layout == Layout::pairs ? 1 : 3 * (static_cast<double>(particles) - 1);
   law.boltzmann = fluid.boltzmann();
-  law.shape = fluid.parameters().heat_capacity / fluid.boltzmann() + 1;
+  law.shape = heat_capacity(fluid) / fluid.boltzmann() + 1;
   return law;
 }
 
@@ -151,8 +158,12 @@ void draw_canonical(const Fluid& fluid, Layout layout, double temperature, const
 void draw_off_equilibrium(const Fluid& fluid, Layout layout, double energy, const Noise& noise,
                           State& state) {
   const auto law = microcanonical_law(fluid, layout, state.size());
+  draw_alike(fluid, layout, energy, 0.5 * law.kinetic_energy(energy), noise, state);
+}
+
+void draw_alike(const Fluid& fluid, Layout layout, double energy, double kinetic,
+                const Noise& noise, State& state) {
   draw_directions(layout, noise, state);
-  const double kinetic = 0.5 * law.kinetic_energy(energy);
   for_each_island(layout, state, [&](std::size_t first, std::size_t last) {
     const double present = 0.5 * fluid.mass() * squared_speeds(state, first, last);
     const double scale = present > 0 ? std::sqrt(kinetic / present) : 0;  // one particle: none

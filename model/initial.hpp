@@ -39,7 +39,12 @@ struct MicrocanonicalLaw {
   double energy_at(double temperature) const { return boltzmann * total_shape() * temperature; }
 };
 
-/// The law of `particles` particles of the fluid in a layout; boltzmann must be above 0.
+/// Heat capacity of a particle of the first species at the fluid's temperature.
+double heat_capacity(const Fluid& fluid);
+
+/// The law of `particles` particles of the fluid in a layout; boltzmann must be above 0. Where the
+/// heat capacity is not constant it is not exact: the law of the heat capacity at the fluid's
+/// temperature.
 MicrocanonicalLaw microcanonical_law(const Fluid& fluid, Layout layout, std::size_t particles);
 
 /// A cubic box of the given number density; for `pairs` the smallest lattice on which every pair is
@@ -66,6 +71,10 @@ void draw_canonical(const Fluid& fluid, Layout layout, double temperature, const
 /// kinetic energy of equilibrium.
 void draw_off_equilibrium(const Fluid& fluid, Layout layout, double energy, const Noise& noise,
                           State& state);
+
+/// The same with a given kinetic energy per island.
+void draw_alike(const Fluid& fluid, Layout layout, double energy, double kinetic,
+                const Noise& noise, State& state);
 
 /// Independent normal velocities of the given spread per component (along the pair for `pairs`),
 /// the island's momentum removed, and all particles at one temperature.

@@ -5,6 +5,11 @@
 namespace driftless {
 namespace {
 
+/// The factor of a coefficient that follows temperatures: given, or else the power.
+CoefficientLaw factor_of(const CoefficientLaw& law, double exponent, double temperature) {
+  return law.is_constant() ? CoefficientLaw::power(exponent, temperature) : law;
+}
+
 double reduced(double m_i, double m_j) {
   if (m_i == m_j) return m_i / 2;
   return std::isinf(m_j) ? m_i : m_i * m_j / (m_i + m_j);
@@ -23,7 +28,11 @@ PairLaw::PairLaw(const FluidParameters& fluid, const PairCoefficients& coefficie
       reduced_mass_(reduced(i.mass, j.mass)),
       share_i_(std::isinf(j.mass) ? 1 : 0.5),
       closure_(fluid.friction_closure),
-      heat_form_(fluid.heat_form) {}
+      heat_form_(fluid.heat_form),
+      friction_factor_(
+          factor_of(fluid.friction_law, fluid.friction_temperature_exponent, fluid.temperature)),
+      conduction_factor_(factor_of(fluid.conduction_law, fluid.conduction_temperature_exponent,
+                                   fluid.temperature)) {}
 
 PairLaw PairLaw::uniform_field(const FluidParameters& fluid, double force, const Partner& i) {
   const Partner earth{std::numeric_limits<double>::infinity(), i.state};

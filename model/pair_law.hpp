@@ -104,10 +104,22 @@ class PairLaw {
     return mean_of(temperature_i(pair), temperature_j(pair));
   }
 
-  /// The friction law of a pair in its present state; zeta is constant in the energies for the
-  /// closure `friction`, Gamma for the closure `noise`, where nothing is noise-induced.
+  /// Whether Gamma, or Lambda, depends on the internal energies: then there is a noise-induced
+  /// friction, or heat rate.
+  bool friction_noise_follows_energies() const {
+    return has_friction() &&
+           (closure_ == FrictionClosure::friction || !friction_factor_.is_constant());
+  }
+  bool heat_noise_follows_energies() const {
+    return has_conduction() &&
+           (heat_form_ == HeatForm::temperature || !conduction_factor_.is_constant());
+  }
+
+  /// The friction law of a pair in its present state; but for the factor of the temperatures zeta
+  /// is constant in the energies for the closure `friction`, Gamma for the closure `noise`.
   template <class V>
   FrictionLaw<V> friction(const Pair<V>& pair) const {
+    if (!friction_factor_.is_constant()) return factored_friction(pair);
     const V theta_i = temperature_i(pair), theta_j = temperature_j(pair);
     const V zeta_0 = coefficients_.friction * pair.w_friction;
     if (closure_ == FrictionClosure::noise) {
@@ -121,10 +133,13 @@ class PairLaw {
     return {zeta_0, 2 * boltzmann_ * zeta_0 * mean, 0.25 * boltzmann_ * zeta_0 * slope};
   }
 
-  /// d ln Gamma/du of either; 0 for the closure `noise`. The noise-induced friction is Gamma^2/2
-  /// times their sum.
+  /// d ln Gamma/du of either. The noise-induced friction is Gamma^2/2 times their sum.
   template <class V>
   AmplitudeSlopes<V> friction_noise_slopes(const Pair<V>& pair) const {
+    if (!friction_factor_.is_constant()) {
+      const auto at = temperatures(pair);
+      return amplitude_slopes(friction_noise_intensity(V(1.0), pair, at), at);
+    }
     if (closure_ == FrictionClosure::noise) return {V(0), V(0)};
     const V mean = mean_temperature(pair);
     const auto slope = [&](const EquationOfState& state, V u) {
@@ -137,6 +152,7 @@ class PairLaw {
   /// The conduction law of a pair in its present state.
   template <class V>
   ConductionLaw<V> conduction(const Pair<V>& pair) const {
+    if (!conduction_factor_.is_constant()) return factored_conduction(pair);
     const V theta_i = temperature_i(pair), theta_j = temperature_j(pair);
     const V coefficient = coefficients_.conduction * pair.w_heat;
     if (heat_form_ == HeatForm::inverse_temperature) {
@@ -152,15 +168,22 @@ class PairLaw {
   /// lambda of a pair in its present state.
   template <class V>
   V conductivity(const Pair<V>& pair) const {
-    const V coefficient = coefficients_.conduction * pair.w_heat;
+    V coefficient = coefficients_.conduction * pair.w_heat;
+    if (!conduction_factor_.is_constant()) {
+      const auto at = temperatures(pair);
+      coefficient *= conduction_factor_.factor(pair.r, at.theta_i, at.theta_j).value;
+    }
     if (heat_form_ != HeatForm::inverse_temperature) return coefficient;
     return coefficient / (temperature_i(pair) * temperature_j(pair));
   }
 
-  /// d ln Lambda/du of either; 0 for `inverse_temperature`. The noise-induced heat rate is Lambda^2
-  /// times their difference.
+  /// d ln Lambda/du of either. The noise-induced heat rate is Lambda^2 times their difference.
   template <class V>
   AmplitudeSlopes<V> heat_noise_slopes(const Pair<V>& pair) const {
+    if (!conduction_factor_.is_constant()) {
+      const auto at = temperatures(pair);
+      return amplitude_slopes(heat_noise_intensity(V(1.0), pair, at), at);
+    }
     if (heat_form_ != HeatForm::temperature) return {V(0), V(0)};
     const auto slope = [&](const EquationOfState& state, V u) {
       return 0.5 * state.inverse_heat_capacity(u) / state.temperature(u);
@@ -169,6 +192,40 @@ class PairLaw {
   }
 
  private:
+  template <class V>
+  PairTemperatures<V> temperatures(const Pair<V>& pair) const {
+    return {temperature_i(pair), temperature_j(pair), i_.state.inverse_heat_capacity(pair.u_i),
+            j_.state.inverse_heat_capacity(pair.u_j)};
+  }
+  /// A of Gamma^2 = 2 k A, given zeta_0 w.
+  template <class V>
+  Coefficient<V> friction_noise_intensity(const V& zeta, const Pair<V>& pair,
+                                          const PairTemperatures<V>& at) const {
+    const auto g = friction_factor_.factor(pair.r, at.theta_i, at.theta_j);
+    if (closure_ == FrictionClosure::noise) return (zeta * temperature_) * g;
+    return friction_intensity(zeta * g, at);
+  }
+  /// A of Lambda^2 = 2 k A, given L_0 w or lambda_0 w.
+  template <class V>
+  Coefficient<V> heat_noise_intensity(const V& coefficient, const Pair<V>& pair,
+                                      const PairTemperatures<V>& at) const {
+    const auto g = conduction_factor_.factor(pair.r, at.theta_i, at.theta_j);
+    if (heat_form_ == HeatForm::inverse_temperature) return coefficient * g;
+    return heat_intensity(coefficient * g, at);
+  }
+  // Not inlined: they would crowd the loops over pairs, whose common case has no factor.
+  template <class V>
+  [[gnu::noinline]] FrictionLaw<V> factored_friction(const Pair<V>& pair) const {
+    const auto at = temperatures(pair);
+    const V zeta = coefficients_.friction * pair.w_friction;
+    return friction_law(boltzmann_, friction_noise_intensity(zeta, pair, at), at);
+  }
+  template <class V>
+  [[gnu::noinline]] ConductionLaw<V> factored_conduction(const Pair<V>& pair) const {
+    const auto at = temperatures(pair);
+    const V coefficient = coefficients_.conduction * pair.w_heat;
+    return conduction_law(boltzmann_, heat_noise_intensity(coefficient, pair, at), at);
+  }
   template <class V>
   static V mean_of(V theta_i, V theta_j) {
     return 2 * theta_i * theta_j / (theta_i + theta_j);
@@ -200,6 +257,7 @@ class PairLaw {
   double boltzmann_, temperature_, weight_exponent_, reduced_mass_, share_i_;
   FrictionClosure closure_;
   HeatForm heat_form_;
+  CoefficientLaw friction_factor_, conduction_factor_;
   bool uniform_ = false;
 };
 
