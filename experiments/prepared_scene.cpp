@@ -55,9 +55,20 @@ double PreparedScene::thermal_kinetic_energy() const {
   return 0.5 * kinetic_degrees() * islands * fluid_.boltzmann() * scene_.fluid.temperature;
 }
 
+double PreparedScene::ideal_energy() const {
+  const double temperature = scene_.fluid.temperature;
+  if (fluid_.has_constant_heat_capacities()) {
+    return microcanonical_law(fluid_, scene_.layout, scene_.particles).energy_at(temperature);
+  }
+  return 0.5 * kinetic_degrees() * fluid_.boltzmann() * temperature +
+         static_cast<double>(island_size()) * fluid_.internal_energy(temperature);
+}
+
 void PreparedScene::find_law() {
-  // Walls and slabs take momentum and heat, and species share energies in other ways.
-  if (!fluid_.fluctuates() || box_.is_bounded() || fluid_.species() > 1 || scene_.heat_slabs) {
+  // Walls and slabs take momentum and heat, and species, or other equations of state, share
+  // energies in other ways.
+  if (!fluid_.fluctuates() || box_.is_bounded() || fluid_.species() > 1 || scene_.heat_slabs ||
+      !fluid_.has_constant_heat_capacities()) {
     return;
   }
   auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
@@ -131,7 +142,7 @@ void PreparedScene::prepare_with_repulsion() {
     pilot.advance_canonical();
     if (path >= pilot_burn_in) potential += pilot.system().potential_energy() / pilot_paths;
   }
-  const double ideal = law.energy_at(scene_.fluid.temperature);
+  const double ideal = ideal_energy();
   const double energy = ideal + potential;
   island_energy_ = ideal;
   total_energy_ = energy + centre_of_mass_energy(scene_);
@@ -250,7 +261,6 @@ bool PreparedScene::starts_off_equilibrium(unsigned replica) const {
 
 System PreparedScene::start(unsigned replica) const {
   const Noise numbers = noise(replica);
-  const auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
   const bool off = starts_off_equilibrium(replica);
   State state =
       configurations_.empty() || off
@@ -264,14 +274,13 @@ System PreparedScene::start(unsigned replica) const {
     draw_canonical(fluid_, scene_.layout, scene_.fluid.temperature * (off ? 0.5 : 1), numbers,
                    state);
   } else if (scene_.initial_state == InitialState::microcanonical) {
-    double energy = law.energy_at(scene_.fluid.temperature);
+    double energy = ideal_energy();
     if (!configurations_.empty()) {
       state.internal_energy.assign(state.size(), 1.0);
       System probe(fluid_, box_, state, numbers, scene_.frozen);
       energy = total_energy_ - centre_of_mass_energy(scene_) - probe.potential_energy();
     }
-    (off ? draw_off_equilibrium : draw_microcanonical)(fluid_, scene_.layout, energy, numbers,
-                                                       state);
+    draw_start(energy, off, numbers, state);
   } else {
     const bool rest = scene_.initial_state == InitialState::rest;
     draw_given_spread(fluid_, scene_.layout, rest ? 0.0 : scene_.initial_velocity_spread,
@@ -284,6 +293,16 @@ System PreparedScene::start(unsigned replica) const {
   scale_to_species(state);
   boost_frame(scene_.frame_velocity, state);
   return System(fluid_, box_, std::move(state), numbers, scene_.frozen);
+}
+
+void PreparedScene::draw_start(double energy, bool off, const Noise& numbers, State& state) const {
+  if (fluid_.has_constant_heat_capacities()) {
+    (off ? draw_off_equilibrium : draw_microcanonical)(fluid_, scene_.layout, energy, numbers,
+                                                       state);
+    return;
+  }
+  const double kinetic = 0.5 * kinetic_degrees() * fluid_.boltzmann() * scene_.fluid.temperature;
+  draw_alike(fluid_, scene_.layout, energy, off ? 0.5 * kinetic : kinetic, numbers, state);
 }
 
 void PreparedScene::scale_to_species(State& state) const {

@@ -76,6 +76,9 @@ class PreparedScene {
 
  private:
   void find_law();
+  /// Kinetic plus internal energy of an island at the scene's temperature.
+  double ideal_energy() const;
+  void draw_start(double energy, bool off, const Noise& numbers, State& state) const;
   void prepare_ideal();
   void prepare_with_repulsion();
   void prepare_isothermal();

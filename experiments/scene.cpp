@@ -122,7 +122,7 @@ double inverse_temperature_conduction(const FluidParameters& fluid) {
 /// Rate at which conduction through a summed weight relaxes one particle's internal energy.
 double conduction_rate(const FluidParameters& fluid, double weight) {
   return weight * inverse_temperature_conduction(fluid) /
-         (fluid.heat_capacity * fluid.temperature * fluid.temperature);
+         (heat_capacity(Fluid(fluid)) * fluid.temperature * fluid.temperature);
 }
 
 /// Friction takes kinetic energy at this rate from a pair, or from the particles of a fluid.
@@ -149,7 +149,7 @@ double fluid_relaxation_rate(const Scene& scene) {
   const auto& f = scene.fluid;
   double rate = scene.density * conduction_rate(f, weight_volume(f.heat_range, f.weight_exponent));
   if (f.boltzmann > 0) {
-    const double shape = f.heat_capacity / f.boltzmann + 1;
+    const double shape = heat_capacity(Fluid(f)) / f.boltzmann + 1;
     rate += scene.density * f.friction * weight_volume(f.friction_range, f.weight_exponent) /
             (2 * f.mass * shape);
   }

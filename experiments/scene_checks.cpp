@@ -146,9 +146,31 @@ void check_bath(const Fluid& fluid, const Location& location) {
           "true; allowed is a number > 0");
 }
 
+void check_equation_of_state(const FluidParameters& fluid, const Location& location) {
+  if (fluid.isothermal) return;
+  if (!fluid.equation_of_state.empty()) {
+    try {
+      EquationOfState::table(fluid.equation_of_state);
+    } catch (const std::invalid_argument& error) {
+      location.member("equation_of_state")
+          .refuse(std::string("holds no equation of state: ") + error.what());
+    }
+    return;
+  }
+  const double unit = fluid.boltzmann > 0 ? fluid.boltzmann : 1;
+  const double limit = fluid.heat_capacity / fluid.temperature;
+  if (fluid.heat_capacity_slope < limit) return;
+  location.member("heat_capacity_slope")
+      .refuse(fmt::format("is {}, which takes the heat capacity to 0 or below above the "
+                          "temperature 0; allowed is a number >= 0 and < {}, "
+                          "heat_capacity/temperature",
+                          describe(fluid.heat_capacity_slope / unit), describe(limit / unit)));
+}
+
 }  // namespace
 
 void check_scene(const Scene& scene, const Location& location) try {
+  check_equation_of_state(scene.fluid, location);
   const Fluid fluid(scene.fluid);
   if (scene.frozen && fluid.has_repulsion()) {
     location.member("repulsion")

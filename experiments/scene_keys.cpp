@@ -162,15 +162,41 @@ json species_of(const Scene& scene) {
   return list;
 }
 
+SpeciesParameters first_species(const FluidParameters& fluid) {
+  return {fluid.mass, fluid.heat_capacity, fluid.heat_capacity_slope, fluid.equation_of_state};
+}
+
+/// At every temperature.
+void multiply_heat_capacity(double factor, SpeciesParameters& species) {
+  species.heat_capacity *= factor;
+  species.heat_capacity_slope *= factor;
+  for (auto& point : species.equation_of_state) point.internal_energy *= factor;
+}
+
+json points_of(const Scene& scene) {
+  json list = json::array();
+  for (const auto& point : scene.fluid.equation_of_state) {
+    list.push_back({point.temperature, point.internal_energy});
+  }
+  return list;
+}
+
+void set_points(Scene& scene, const json& list) {
+  scene.fluid.equation_of_state.clear();
+  for (const auto& point : list) {
+    scene.fluid.equation_of_state.push_back({point[0].get<double>(), point[1].get<double>()});
+  }
+}
+
 void set_species(Scene& scene, const json& list) {
   scene.further_shares.clear();
   scene.fluid.further_species.clear();
   for (const auto& object : list) {
     scene.further_shares.push_back(object["share"].get<double>());
-    SpeciesParameters species{scene.fluid.mass, scene.fluid.heat_capacity};
+    auto species = first_species(scene.fluid);
     if (object.contains("mass")) species.mass = object["mass"].get<double>();
     if (object.contains("heat_capacity")) {
-      species.heat_capacity = object["heat_capacity"].get<double>() * scene.fluid.heat_capacity;
+      multiply_heat_capacity(object["heat_capacity"].get<double>(), species);
     }
     scene.fluid.further_species.push_back(species);
   }
@@ -306,6 +332,11 @@ std::string_view of_given(const Scene& scene) {
 std::string_view of_internal_energies(const Scene& scene) {
   return scene.fluid.isothermal ? "isothermal is true and particles have no internal energy" : "";
 }
+std::string_view of_heat_capacities(const Scene& scene) {
+  return scene.fluid.equation_of_state.empty()
+             ? of_internal_energies(scene)
+             : "the points of equation_of_state give the heat capacity";
+}
 std::string_view of_conducting(const Scene& scene) {
   return scene.fluid.isothermal
              ? "isothermal is true and particles have no heat that they could exchange"
@@ -384,7 +415,21 @@ std::vector<SceneKey> keys_of_the_system() {
        [](Scene& scene, const json& value) {
          scene.fluid.heat_capacity = value.get<double>() * heat_capacity_unit(scene);
        },
-       of_internal_energies},
+       of_heat_capacities},
+      {"heat_capacity_slope", ValueRule::not_negative(),
+       "what the heat capacity, quoted at temperature, rises by per unit of temperature, in the "
+       "same unit",
+       [](const Scene& scene) -> json {
+         return scene.fluid.heat_capacity_slope / heat_capacity_unit(scene);
+       },
+       [](Scene& scene, const json& value) {
+         scene.fluid.heat_capacity_slope = value.get<double>() * heat_capacity_unit(scene);
+       },
+       of_heat_capacities},
+      {"equation_of_state", ValueRule::points("[temperature, energy]"),
+       "two points or more through which a particle's internal energy follows its temperature, "
+       "instead of a heat capacity; both rising, in program units",
+       points_of, set_points, of_internal_energies},
   };
 }
 
@@ -410,7 +455,7 @@ std::vector<SceneKey> keys_of_the_species() {
                           {{"share", ValueRule::positive(), true, "of all particles, below 1"},
                            {"mass", ValueRule::positive(), false, "mass m of a particle"},
                            {"heat_capacity", ValueRule::positive(), false,
-                            "heat capacity in units of the first species'"}}),
+                            "heat capacity in units of the first species', at all temperatures"}}),
        "species beside the first, 0, numbered from 1", species_of, set_species, of_fluids},
       {"species_pairs",
        ValueRule::objects("a pair of species",
@@ -456,6 +501,14 @@ std::vector<SceneKey> keys_of_the_laws() {
       plain<&FluidParameters::weight_exponent>(
           "weight_exponent", ValueRule::positive(),
           "s of the weight (1 - r/range)^s of friction and conduction"),
+      plain<&FluidParameters::friction_temperature_exponent>(
+          "friction_temperature_exponent", ValueRule::number(),
+          "p of the factor (mean temperature of the pair/temperature)^p of the noise's strength "
+          "Gamma^2 or of the friction, whichever friction_closure gives; geometric mean",
+          of_closures),
+      plain<&FluidParameters::conduction_temperature_exponent>(
+          "conduction_temperature_exponent", ValueRule::number(),
+          "the same of the coefficient that heat_form gives", of_conducting),
   };
 }
 
@@ -491,7 +544,8 @@ std::vector<SceneKey> keys_of_the_start() {
        set_velocities, of_given},
       {"initial_state", ValueRule::word({"microcanonical", "canonical", "rest", "given"}),
        "velocities and internal energies at the start: drawn from the exact law, which is "
-       "microcanonical, or canonical if isothermal; at rest; or given",
+       "microcanonical (all particles at temperature where heat capacities vary), or canonical if "
+       "isothermal; at rest; or given",
        [](const Scene& scene) -> json { return to_string(scene.initial_state); },
        set_initial_state},
       {"initial_temperature", ValueRule::positive(),

@@ -24,6 +24,11 @@ bool is_vector(const json& value) {
          std::all_of(value.begin(), value.end(), is_number);
 }
 
+bool is_point(const json& value) {
+  return value.is_array() && value.size() == 2 &&
+         std::all_of(value.begin(), value.end(), is_number);
+}
+
 bool is_integer(const json& value) {
   if (value.is_number_unsigned()) return true;
   if (value.is_number_integer()) return value.get<std::int64_t>() >= 0;
@@ -49,6 +54,12 @@ ValueRule ValueRule::boolean() { return ValueRule(Kind::boolean); }
 ValueRule ValueRule::name() { return ValueRule(Kind::name); }
 ValueRule ValueRule::vector() { return ValueRule(Kind::vector); }
 ValueRule ValueRule::vectors() { return ValueRule(Kind::vectors); }
+
+ValueRule ValueRule::points(std::string pair) {
+  ValueRule rule(Kind::points);
+  rule.owner_ = std::move(pair);
+  return rule;
+}
 
 ValueRule ValueRule::integer(std::uint64_t least, std::uint64_t most) {
   ValueRule rule(Kind::integer);
@@ -97,6 +108,8 @@ bool ValueRule::holds(const json& value) const {
       return is_vector(value);
     case Kind::vectors:
       return value.is_array() && std::all_of(value.begin(), value.end(), is_vector);
+    case Kind::points:
+      return value.is_array() && std::all_of(value.begin(), value.end(), is_point);
     case Kind::object:
       return value.is_object();
     case Kind::objects:
@@ -119,6 +132,13 @@ void ValueRule::check(const json& value, const Location& location) const {
   }
   if (kind_ == Kind::vectors && value.is_array()) {
     for (std::size_t i = 0; i < value.size(); ++i) vector().check(value[i], location.element(i));
+  }
+  if (kind_ == Kind::points && value.is_array()) {
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      if (is_point(value[i])) continue;
+      location.element(i).refuse("is " + describe(value[i]) + "; allowed is " + owner_ +
+                                 ", two numbers");
+    }
   }
   std::string hint;
   if (kind_ == Kind::word && value.is_string()) {
@@ -148,6 +168,8 @@ std::string ValueRule::allowed() const {
       return "a list of three numbers [x, y, z]";
     case Kind::vectors:
       return "a list of [x, y, z]";
+    case Kind::points:
+      return "a list of " + owner_;
     case Kind::object:
       return "an object with " + keys();
     case Kind::objects:
@@ -190,6 +212,11 @@ json ValueRule::schema() const {
       return {{"type", "array"}, {"items", number().schema()}, {"minItems", 3}, {"maxItems", 3}};
     case Kind::vectors:
       return {{"type", "array"}, {"items", vector().schema()}};
+    case Kind::points:
+      return {
+          {"type", "array"},
+          {"items",
+           {{"type", "array"}, {"items", number().schema()}, {"minItems", 2}, {"maxItems", 2}}}};
     case Kind::object:
       return fields_schema(*fields_);
     case Kind::objects:

@@ -30,6 +30,8 @@ class ValueRule {
   /// [x, y, z], or a list of such.
   static ValueRule vector();
   static ValueRule vectors();
+  /// A list of pairs of numbers; `pair` is how messages write one: "[temperature, energy]".
+  static ValueRule points(std::string pair);
   /// An object of plain fields, or a list of such; `owner` is what messages call one: "a wall".
   static ValueRule object(std::string owner, std::vector<Field> fields);
   static ValueRule objects(std::string owner, std::vector<Field> fields);
@@ -52,6 +54,7 @@ class ValueRule {
     name,
     vector,
     vectors,
+    points,
     object,
     objects
   };
