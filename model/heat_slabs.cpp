@@ -94,6 +94,13 @@ void book(System& system, double heat) {
 }
 
 void refuse_fluid(const Fluid& fluid, SlabDrive drive) {
+  for (std::size_t species = 0; species < fluid.species(); ++species) {
+    if (drive != SlabDrive::temperatures) break;
+    if (fluid.equation_of_state(species).has_constant_heat_capacity()) continue;
+    throw std::invalid_argument(
+        "heat slabs: energies are drawn for a constant heat capacity alone, which species " +
+        std::to_string(species) + " has not");
+  }
   if (drive != SlabDrive::velocity_exchange) {
     if (!fluid.isothermal()) return;
     throw std::invalid_argument(

@@ -245,6 +245,20 @@ TEST(HeatSlabs, WhatIsSavedGoesOnWithTheSameBits) {
   }
 }
 
+TEST(HeatSlabs, SpeciesOfDifferentMassesDoNotExchangeVelocities) {
+  auto f = small_fluid(terms, 0.5);
+  f.further_species.push_back({});
+  f.further_species.back().heat_capacity = 9;
+  const auto make = [&](SlabDrive drive) {
+    return SlabHeater(slabs_of(drive), Fluid(f), small_box(), Noise(5, 0));
+  };
+  f.further_species.back().mass = f.mass;
+  EXPECT_NO_THROW(make(SlabDrive::velocity_exchange));
+  f.further_species.back().mass = 2 * f.mass;
+  EXPECT_THROW(make(SlabDrive::velocity_exchange), std::invalid_argument);
+  EXPECT_NO_THROW(make(SlabDrive::energy_exchange));
+}
+
 TEST(HeatSlabs, WhatMakesNoSenseIsRefused) {
   const auto refused = [](auto change) {
     HeatSlabs slabs = slabs_of(SlabDrive::heat_rate);
