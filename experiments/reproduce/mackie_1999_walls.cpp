@@ -426,7 +426,7 @@ Outcome conclude(const Conditions& conditions, const Records& records) {
       "whole area is T* L/(L - 2 layers), on two faces or on six; 1.137 takes layers of 0.505, "
       "which a range of 1.24, that of friction and heat, with a strength of 1.8 has. Hard walls "
       "give 1.1.",
-      "Walls on how many faces? The time of the warming (Fig. 3) decides for six.",
+      "Walls on how many faces? The time of the warming (Fig. 3) speaks for six.",
       "Why is U* above the theory? The explicit scheme makes energy at a rate that is "
       "proportional to the step, which has to leave through the walls. Exact schemes between the "
       "same walls have the theory's energy. Or U* counts the potential energy at the walls: the "
