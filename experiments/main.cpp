@@ -212,10 +212,11 @@ int run_reproduce(const ReproduceArguments& arguments) {
                   arguments.seed, arguments.directory);
   if (arguments.quick) command += " --quick";
   const auto effort = arguments.quick ? reproduce::Effort::quick : reproduce::Effort::full;
+  const auto earlier = reproduce::read_papers(arguments.directory);
   const auto papers = reproduce::run_experiments(
       experiments,
       {arguments.directory, {effort, arguments.seed}, arguments.threads, command, arguments.quiet});
-  return print_papers(papers, arguments.directory);
+  return print_papers(reproduce::united(earlier, papers), arguments.directory);
 }
 
 void report(const Arguments& arguments) {

@@ -141,6 +141,21 @@ TEST_F(Reproduce, AFailureIsReportedAndTheOthersGoOn) {
   EXPECT_EQ(runs, 2);
 }
 
+TEST(Papers, KeepTheExperimentsOfAnEarlierReportThatAreNotRunAgain) {
+  const auto& all = experiments();
+  ASSERT_GE(all.size(), 3U);
+  const auto record = [](const Experiment* experiment, const char* command) {
+    return json{{"name", experiment->name}, {"command", command}};
+  };
+  const json earlier = {
+      {"experiments", {record(all[1], "first"), record(all[2], "first"), {{"name", "long gone"}}}}};
+  const json later = {{"experiments", {record(all[2], "second"), record(all[0], "second")}}};
+  const json both = united(earlier, later)["experiments"];
+  EXPECT_EQ(both,
+            json({record(all[0], "second"), record(all[1], "first"), record(all[2], "second")}));
+  EXPECT_EQ(united(std::nullopt, later), later);
+}
+
 TEST_F(Reproduce, WritesAReportThatCanBeReadAgain) {
   const auto papers = reproduced(folder_.path(), 2);
   const auto page = write_papers(papers, folder_.path());

@@ -92,12 +92,32 @@ std::string rows_of(const json& experiment) {
 
 }  // namespace
 
+json united(const std::optional<json>& earlier, json papers) {
+  if (!earlier) return papers;
+  const auto find = [](const json& list, std::string_view name) {
+    return std::find_if(list.begin(), list.end(),
+                        [&](const json& one) { return one["name"] == name; });
+  };
+  json all = json::array();
+  for (const auto* experiment : experiments()) {
+    for (const json* report : {static_cast<const json*>(&papers), &*earlier}) {
+      const auto& list = (*report)["experiments"];
+      const auto found = find(list, experiment->name);
+      if (found == list.end()) continue;
+      all.push_back(*found);
+      break;
+    }
+  }
+  papers["experiments"] = all;
+  return papers;
+}
+
 std::string papers_summary(const json& papers) {
-  std::string text = fmt::format("# The papers' figures and values ({})\n\n{}",
-                                 papers["effort"].get<std::string>(), overview(papers));
+  std::string text = "# The papers' figures and values\n\n" + overview(papers);
   for (const auto& experiment : papers["experiments"]) {
-    text += fmt::format("\n## {}: {}\n\n{}", text_of(experiment, "source"),
-                        text_of(experiment, "title"), rows_of(experiment));
+    text += fmt::format("\n## {}: {}\n\n`{}` (commit {})\n\n{}", text_of(experiment, "source"),
+                        text_of(experiment, "title"), text_of(experiment, "command"),
+                        text_of(experiment, "commit"), rows_of(experiment));
   }
   return text;
 }

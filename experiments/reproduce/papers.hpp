@@ -19,6 +19,10 @@ nlohmann::json to_json(const Outcome& outcome);
 /// The report as Markdown: per experiment how many values agree, then every row.
 std::string papers_summary(const nlohmann::json& papers);
 
+/// A report with the experiments of an earlier one that it does not have itself, in the order of
+/// all experiments.
+nlohmann::json united(const std::optional<nlohmann::json>& earlier, nlohmann::json papers);
+
 /// The report of a folder, if that is what the folder (or the file) holds. Throws InputError if it
 /// cannot be read.
 std::optional<nlohmann::json> read_papers(const std::filesystem::path& file_or_folder);

@@ -29,11 +29,18 @@ struct Trial {
   }
 };
 
+/// "abcdef0", "abcdef0-dirty".
+std::string commit_text(const json& provenance) {
+  return provenance["commit"].get<std::string>().substr(0, 7) +
+         (provenance["dirty"].get<bool>() ? "-dirty" : "");
+}
+
 class Reproduction {
  public:
   Reproduction(const std::vector<const Experiment*>& experiments, const ReproduceOptions& options)
       : options_(options), threads_(options.threads > 0 ? options.threads : usable_processors()) {
     for (const auto* experiment : experiments) trials_.push_back({experiment, {}, {}});
+    provenance_ = provenance(threads_, options.conditions.seed, options.command);
   }
 
   json run();
@@ -44,6 +51,7 @@ class Reproduction {
 
   const ReproduceOptions& options_;
   unsigned threads_;
+  json provenance_;
   std::vector<Trial> trials_;
   std::mutex failing_;
 };
@@ -73,7 +81,10 @@ json Reproduction::record_of(const Trial& trial, const Records& records) const {
   json record = {{"name", experiment.name},
                  {"source", experiment.source},
                  {"title", experiment.title},
-                 {"question", experiment.question}};
+                 {"question", experiment.question},
+                 {"effort", to_string(options_.conditions.effort)},
+                 {"command", options_.command},
+                 {"commit", commit_text(provenance_)}};
   Outcome outcome;
   if (const auto* part = trial.failed_part()) {
     record["failure"] = fmt::format("{}: {}", *part, trial.failures.at(*part));
@@ -96,10 +107,8 @@ json Reproduction::run() {
     }
   }
   run_kept_parts(parts, {options_.directory, threads_, options_.command, options_.quiet});
-  json papers = {{"format", papers_format},
-                 {"provenance", provenance(threads_, options_.conditions.seed, options_.command)},
-                 {"effort", to_string(options_.conditions.effort)},
-                 {"experiments", json::array()}};
+  json papers = {
+      {"format", papers_format}, {"provenance", provenance_}, {"experiments", json::array()}};
   auto part = parts.begin();
   for (const auto& trial : trials_) {
     Records records;

@@ -59,13 +59,15 @@ const chart = (...all) => ({
 const papers = {
   format: 'driftless-papers/1',
   provenance: {command: 'driftless reproduce all', seed: 1},
-  effort: 'quick',
   experiments: [
     {
       name: 'roll',
       source: 'MAN Fig. 4',
       title: 'The convection <roll>',
       question: 'How does the fluid turn?',
+      effort: 'quick',
+      command: 'driftless reproduce roll --quick',
+      commit: 'abcdef0',
       rows: [
         row('wall pressure', 'agrees', 1.137, {value: 1.1372, low: 1.1322, high: 1.1422}),
         row('strength', 'differs', 0.9, {value: 1, low: 1, high: 1}),
@@ -83,6 +85,9 @@ const papers = {
       source: 'MAN Fig. 5',
       title: 'Another',
       question: 'What else?',
+      effort: 'full',
+      command: 'driftless reproduce broken',
+      commit: 'abcdef1',
       failure: 'part 1: the box is too small',
       rows: [],
       pictures: [],
@@ -106,6 +111,7 @@ test('rows, verdicts and pictures are shown, without a fault', async () => {
   assert.equal(overview[1].at(-1), 'failed');
   assert.deepEqual(overview[2].slice(2), ['1', '1', '0', '1', '']);
   assert.match(await page.textContent('#broken'), /the box is too small/);
+  assert.match(await page.textContent('#roll'), /driftless reproduce roll --quick \(commit abcdef0\)/);
   assert.match(await page.textContent('#roll'), /The longest arrow is 0\.0\d+\./);
   assert.deepEqual(faults, []);
   await page.context().close();

@@ -50,13 +50,14 @@ function remarks_of({remarks}) {
 }
 
 function section_of(experiment) {
-  const {name, source, title, question, failure, rows} = experiment;
+  const {name, source, title, question, failure, rows, command, commit} = experiment;
   return element(
     'section',
     {id: name, class: 'experiment', 'aria-label': title},
     element('p', {class: 'kind'}, `${source} · ${name}`),
     element('h2', {}, title),
     element('p', {}, question),
+    element('p', {class: 'note'}, element('code', {}, command), ` (commit ${commit})`),
     failure ? element('p', {class: 'failure'}, `It failed. ${failure}`) : null,
     rows.length ? element('div', {class: 'scroll'}, rows_table(experiment)) : null,
     pictures_of(experiment),
@@ -77,10 +78,10 @@ function start() {
   const count = papers.experiments.length;
   const title = count === 1 ? papers.experiments[0].title : `${count} experiments of the papers`;
   document.title = `${title} · Driftless`;
-  replace('title', papers.effort === 'full' ? title : `${title}, ${papers.effort}`);
+  replace('title', title);
   replace('overview-place', overview_table(papers.experiments));
   replace('experiments-place', ...papers.experiments.map(section_of));
-  render_provenance(papers.provenance, {effort: papers.effort});
+  render_provenance(papers.provenance);
   settle(draw_pictures);
 }
 
