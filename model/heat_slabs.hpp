@@ -48,7 +48,8 @@ class SlabHeater {
  public:
   /// Noise is that of the draws of `temperatures`. Throws std::invalid_argument naming the
   /// parameter, its value and the allowed range; so too if an isothermal fluid is to be driven by
-  /// internal energies, which it does not have, or species of different masses by their velocities.
+  /// internal energies, which it does not have, species of different masses by their velocities, or
+  /// a heat capacity that is not constant by `temperatures`.
   SlabHeater(const HeatSlabs& slabs, const Fluid& fluid, const Box& box, const Noise& noise);
 
   /// What the slabs do after the system has gone on by so long, at the positions as they are; of no

@@ -259,6 +259,16 @@ TEST(HeatSlabs, SpeciesOfDifferentMassesDoNotExchangeVelocities) {
   EXPECT_NO_THROW(make(SlabDrive::energy_exchange));
 }
 
+TEST(HeatSlabs, EnergiesAreDrawnForAConstantHeatCapacityAlone) {
+  auto f = small_fluid(terms, 0.5);
+  f.equation_of_state = {{0.5, 5}, {1, 12}, {2, 30}};
+  const auto make = [&](SlabDrive drive) {
+    return SlabHeater(slabs_of(drive), Fluid(f), small_box(), Noise(5, 0));
+  };
+  EXPECT_THROW(make(SlabDrive::temperatures), std::invalid_argument);
+  EXPECT_NO_THROW(make(SlabDrive::heat_rate));
+}
+
 TEST(HeatSlabs, WhatMakesNoSenseIsRefused) {
   const auto refused = [](auto change) {
     HeatSlabs slabs = slabs_of(SlabDrive::heat_rate);
