@@ -159,7 +159,7 @@ void check_equation_of_state(const FluidParameters& fluid, const Location& locat
   }
   const double unit = fluid.boltzmann > 0 ? fluid.boltzmann : 1;
   const double limit = fluid.heat_capacity / fluid.temperature;
-  if (fluid.heat_capacity_slope < limit) return;
+  if (fluid.heat_capacity_slope == 0 || fluid.heat_capacity_slope < limit) return;
   location.member("heat_capacity_slope")
       .refuse(fmt::format("is {}, which takes the heat capacity to 0 or below above the "
                           "temperature 0; allowed is a number >= 0 and < {}, "

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -433,6 +434,21 @@ std::vector<SceneKey> keys_of_the_system() {
   };
 }
 
+/// What most scenes do not have.
+const std::vector<std::string_view>& rare_keys() {
+  static const std::vector<std::string_view> rare = {"sides",
+                                                     "walls",
+                                                     "gravity",
+                                                     "heat_slabs",
+                                                     "species",
+                                                     "species_pairs",
+                                                     "heat_capacity_slope",
+                                                     "equation_of_state",
+                                                     "friction_temperature_exponent",
+                                                     "conduction_temperature_exponent"};
+  return rare;
+}
+
 std::vector<SceneKey> keys_of_the_surroundings() {
   return {
       {"sides", ValueRule::vector(), "sides [x, y, z] of the box, relative to each other",
@@ -567,6 +583,10 @@ const std::vector<SceneKey>& scene_keys() {
     for (auto group : {keys_of_the_surroundings(), keys_of_the_species(), keys_of_the_laws(),
                        keys_of_the_start()}) {
       all.insert(all.end(), group.begin(), group.end());
+    }
+    for (auto& key : all) {
+      const auto& rare = rare_keys();
+      key.told_if_unusual = std::find(rare.begin(), rare.end(), key.name) != rare.end();
     }
     return all;
   }();

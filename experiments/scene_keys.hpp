@@ -20,6 +20,7 @@ struct SceneKey {
   void (*set)(Scene&, const nlohmann::json&);
   /// Why the key means nothing to a scene; empty where it means something.
   std::string_view (*without_effect)(const Scene&) = nullptr;
+  bool told_if_unusual = false;  ///< left out of what is written where it is as in most scenes
 };
 
 /// In the order in which they take effect.

@@ -97,6 +97,7 @@ json scene_parameters(const Scene& scene) {
   json parameters = json::object();
   for (const auto& key : scene_keys()) {
     const bool acts = !key.without_effect || key.without_effect(scene).empty();
+    if (key.told_if_unusual && key.get(scene) == key.get(Scene())) continue;
     if (acts && key.name != "preset" && key.name != "name") {
       parameters[std::string(key.name)] = key.get(scene);
     }
@@ -107,7 +108,7 @@ json scene_parameters(const Scene& scene) {
 json to_json(const Scene& scene) {
   json object = scene_parameters(scene);
   object["preset"] = scene.preset;
-  object["name"] = scene.name;
+  if (!scene.name.empty()) object["name"] = scene.name;
   return object;
 }
 
