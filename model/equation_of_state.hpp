@@ -108,10 +108,7 @@ class EquationOfState {
   V temperature(V internal_energy) const {
     if (form_ == Form::constant) [[likely]]
       return internal_energy * inverse_heat_capacity_;
-    if (form_ == Form::reservoir) return V(temperature_);
-    if (form_ == Form::linear) return linear_.temperature(internal_energy);
-    return one_by_one([this](double u, double) { return pieces_[place_of(u)].temperature(u); },
-                      internal_energy);
+    return other_temperature(internal_energy);
   }
 
   /// 1/c(u) = dtheta/du; 0 for a reservoir.
@@ -119,11 +116,7 @@ class EquationOfState {
   V inverse_heat_capacity(V internal_energy) const {
     if (form_ == Form::constant) [[likely]]
       return V(inverse_heat_capacity_);
-    if (form_ == Form::reservoir) return V(0.0);
-    if (form_ == Form::linear) return 1 / linear_.heat_capacity(internal_energy);
-    return one_by_one(
-        [this](double u, double) { return 1 / pieces_[place_of(u)].heat_capacity(u); },
-        internal_energy);
+    return other_inverse_heat_capacity(internal_energy);
   }
 
   /// s(u), up to a constant.
@@ -132,9 +125,7 @@ class EquationOfState {
     using std::log;
     if (form_ == Form::constant) [[likely]]
       return heat_capacity_ * log(internal_energy);
-    if (form_ == Form::reservoir) return internal_energy * inverse_temperature_;
-    if (form_ == Form::linear) return linear_.entropy(internal_energy);
-    return one_by_one([this](double u, double) { return table_entropy(u); }, internal_energy);
+    return other_entropy(internal_energy);
   }
 
   /// s(u + gain) - s(u), to rounding however small the gain; both energies must be above 0.
@@ -144,10 +135,7 @@ class EquationOfState {
       const V x = gain / internal_energy;
       return heat_capacity_ * x * log_one_plus_over(x);
     }
-    if (form_ == Form::reservoir) return gain * inverse_temperature_;
-    if (form_ == Form::linear) return linear_.entropy_gain(internal_energy, gain);
-    return one_by_one([this](double u, double more) { return table_entropy_gain(u, more); },
-                      internal_energy, gain);
+    return other_entropy_gain(internal_energy, gain);
   }
 
   /// u(theta), the inverse of temperature(). A reservoir's energy has no origin: any number above 0
@@ -159,10 +147,40 @@ class EquationOfState {
  private:
   enum class Form { constant, linear, reservoir, table };
 
-  /// f(u, gain) of every lane. Not inlined: it would crowd the loops over pairs, whose common case
-  /// is another form.
+  // The other forms. Not inlined: they would crowd the loops over pairs, whose common case is a
+  // constant heat capacity.
+  template <class V>
+  [[gnu::noinline, gnu::cold]] V other_temperature(V internal_energy) const {
+    if (form_ == Form::reservoir) return V(temperature_);
+    if (form_ == Form::linear) return linear_.temperature(internal_energy);
+    return one_by_one([this](double u, double) { return pieces_[place_of(u)].temperature(u); },
+                      internal_energy);
+  }
+  template <class V>
+  [[gnu::noinline, gnu::cold]] V other_inverse_heat_capacity(V internal_energy) const {
+    if (form_ == Form::reservoir) return V(0.0);
+    if (form_ == Form::linear) return 1 / linear_.heat_capacity(internal_energy);
+    return one_by_one(
+        [this](double u, double) { return 1 / pieces_[place_of(u)].heat_capacity(u); },
+        internal_energy);
+  }
+  template <class V>
+  [[gnu::noinline, gnu::cold]] V other_entropy(V internal_energy) const {
+    if (form_ == Form::reservoir) return internal_energy * inverse_temperature_;
+    if (form_ == Form::linear) return linear_.entropy(internal_energy);
+    return one_by_one([this](double u, double) { return table_entropy(u); }, internal_energy);
+  }
+  template <class V>
+  [[gnu::noinline, gnu::cold]] V other_entropy_gain(V internal_energy, V gain) const {
+    if (form_ == Form::reservoir) return gain * inverse_temperature_;
+    if (form_ == Form::linear) return linear_.entropy_gain(internal_energy, gain);
+    return one_by_one([this](double u, double more) { return table_entropy_gain(u, more); },
+                      internal_energy, gain);
+  }
+
+  /// f(u, gain) of every lane.
   template <class V, class Function>
-  [[gnu::noinline]] static V one_by_one(const Function& f, V u, V gain = V(0.0)) {
+  static V one_by_one(const Function& f, V u, V gain = V(0.0)) {
     if constexpr (std::is_same_v<V, double>) {
       return f(u, gain);
     } else {

@@ -119,7 +119,9 @@ class PairLaw {
   /// is constant in the energies for the closure `friction`, Gamma for the closure `noise`.
   template <class V>
   FrictionLaw<V> friction(const Pair<V>& pair) const {
-    if (!friction_factor_.is_constant()) return factored_friction(pair);
+    if (!friction_factor_.is_constant()) {
+      return factored_friction(pair.r, pair.w_friction, pair.u_i, pair.u_j);
+    }
     const V theta_i = temperature_i(pair), theta_j = temperature_j(pair);
     const V zeta_0 = coefficients_.friction * pair.w_friction;
     if (closure_ == FrictionClosure::noise) {
@@ -136,10 +138,7 @@ class PairLaw {
   /// d ln Gamma/du of either. The noise-induced friction is Gamma^2/2 times their sum.
   template <class V>
   AmplitudeSlopes<V> friction_noise_slopes(const Pair<V>& pair) const {
-    if (!friction_factor_.is_constant()) {
-      const auto at = temperatures(pair);
-      return amplitude_slopes(friction_noise_intensity(V(1.0), pair, at), at);
-    }
+    if (!friction_factor_.is_constant()) return factored_slopes(pair.r, pair.u_i, pair.u_j);
     if (closure_ == FrictionClosure::noise) return {V(0), V(0)};
     const V mean = mean_temperature(pair);
     const auto slope = [&](const EquationOfState& state, V u) {
@@ -152,7 +151,9 @@ class PairLaw {
   /// The conduction law of a pair in its present state.
   template <class V>
   ConductionLaw<V> conduction(const Pair<V>& pair) const {
-    if (!conduction_factor_.is_constant()) return factored_conduction(pair);
+    if (!conduction_factor_.is_constant()) {
+      return factored_conduction(pair.r, pair.w_heat, pair.u_i, pair.u_j);
+    }
     const V theta_i = temperature_i(pair), theta_j = temperature_j(pair);
     const V coefficient = coefficients_.conduction * pair.w_heat;
     if (heat_form_ == HeatForm::inverse_temperature) {
@@ -169,10 +170,7 @@ class PairLaw {
   template <class V>
   V conductivity(const Pair<V>& pair) const {
     V coefficient = coefficients_.conduction * pair.w_heat;
-    if (!conduction_factor_.is_constant()) {
-      const auto at = temperatures(pair);
-      coefficient *= conduction_factor_.factor(pair.r, at.theta_i, at.theta_j).value;
-    }
+    if (!conduction_factor_.is_constant()) coefficient *= factor(pair.r, pair.u_i, pair.u_j);
     if (heat_form_ != HeatForm::inverse_temperature) return coefficient;
     return coefficient / (temperature_i(pair) * temperature_j(pair));
   }
@@ -180,10 +178,7 @@ class PairLaw {
   /// d ln Lambda/du of either. The noise-induced heat rate is Lambda^2 times their difference.
   template <class V>
   AmplitudeSlopes<V> heat_noise_slopes(const Pair<V>& pair) const {
-    if (!conduction_factor_.is_constant()) {
-      const auto at = temperatures(pair);
-      return amplitude_slopes(heat_noise_intensity(V(1.0), pair, at), at);
-    }
+    if (!conduction_factor_.is_constant()) return factored_heat_slopes(pair.r, pair.u_i, pair.u_j);
     if (heat_form_ != HeatForm::temperature) return {V(0), V(0)};
     const auto slope = [&](const EquationOfState& state, V u) {
       return 0.5 * state.inverse_heat_capacity(u) / state.temperature(u);
@@ -193,38 +188,56 @@ class PairLaw {
 
  private:
   template <class V>
-  PairTemperatures<V> temperatures(const Pair<V>& pair) const {
-    return {temperature_i(pair), temperature_j(pair), i_.state.inverse_heat_capacity(pair.u_i),
-            j_.state.inverse_heat_capacity(pair.u_j)};
+  PairTemperatures<V> temperatures(V u_i, V u_j) const {
+    return {i_.state.temperature(u_i), j_.state.temperature(u_j),
+            i_.state.inverse_heat_capacity(u_i), j_.state.inverse_heat_capacity(u_j)};
   }
   /// A of Gamma^2 = 2 k A, given zeta_0 w.
   template <class V>
-  Coefficient<V> friction_noise_intensity(const V& zeta, const Pair<V>& pair,
-                                          const PairTemperatures<V>& at) const {
-    const auto g = friction_factor_.factor(pair.r, at.theta_i, at.theta_j);
+  Coefficient<V> friction_noise_intensity(V zeta, V distance, const PairTemperatures<V>& at) const {
+    const auto g = friction_factor_.factor(distance, at.theta_i, at.theta_j);
     if (closure_ == FrictionClosure::noise) return (zeta * temperature_) * g;
     return friction_intensity(zeta * g, at);
   }
   /// A of Lambda^2 = 2 k A, given L_0 w or lambda_0 w.
   template <class V>
-  Coefficient<V> heat_noise_intensity(const V& coefficient, const Pair<V>& pair,
+  Coefficient<V> heat_noise_intensity(V coefficient, V distance,
                                       const PairTemperatures<V>& at) const {
-    const auto g = conduction_factor_.factor(pair.r, at.theta_i, at.theta_j);
+    const auto g = conduction_factor_.factor(distance, at.theta_i, at.theta_j);
     if (heat_form_ == HeatForm::inverse_temperature) return coefficient * g;
     return heat_intensity(coefficient * g, at);
   }
-  // Not inlined: they would crowd the loops over pairs, whose common case has no factor.
+  // Not inlined, and values alone: they would crowd the loops over pairs, whose common case has no
+  // factor, and keep pairs in memory instead of registers.
   template <class V>
-  [[gnu::noinline]] FrictionLaw<V> factored_friction(const Pair<V>& pair) const {
-    const auto at = temperatures(pair);
-    const V zeta = coefficients_.friction * pair.w_friction;
-    return friction_law(boltzmann_, friction_noise_intensity(zeta, pair, at), at);
+  [[gnu::noinline, gnu::cold]] FrictionLaw<V> factored_friction(V distance, V weight, V u_i,
+                                                                V u_j) const {
+    const auto at = temperatures(u_i, u_j);
+    const V zeta = coefficients_.friction * weight;
+    return friction_law(boltzmann_, friction_noise_intensity(zeta, distance, at), at);
   }
   template <class V>
-  [[gnu::noinline]] ConductionLaw<V> factored_conduction(const Pair<V>& pair) const {
-    const auto at = temperatures(pair);
-    const V coefficient = coefficients_.conduction * pair.w_heat;
-    return conduction_law(boltzmann_, heat_noise_intensity(coefficient, pair, at), at);
+  [[gnu::noinline, gnu::cold]] ConductionLaw<V> factored_conduction(V distance, V weight, V u_i,
+                                                                    V u_j) const {
+    const auto at = temperatures(u_i, u_j);
+    const V coefficient = coefficients_.conduction * weight;
+    return conduction_law(boltzmann_, heat_noise_intensity(coefficient, distance, at), at);
+  }
+  template <class V>
+  [[gnu::noinline, gnu::cold]] AmplitudeSlopes<V> factored_slopes(V distance, V u_i, V u_j) const {
+    const auto at = temperatures(u_i, u_j);
+    return amplitude_slopes(friction_noise_intensity(V(1.0), distance, at), at);
+  }
+  template <class V>
+  [[gnu::noinline, gnu::cold]] AmplitudeSlopes<V> factored_heat_slopes(V distance, V u_i,
+                                                                       V u_j) const {
+    const auto at = temperatures(u_i, u_j);
+    return amplitude_slopes(heat_noise_intensity(V(1.0), distance, at), at);
+  }
+  template <class V>
+  [[gnu::noinline, gnu::cold]] V factor(V distance, V u_i, V u_j) const {
+    const auto at = temperatures(u_i, u_j);
+    return conduction_factor_.factor(distance, at.theta_i, at.theta_j).value;
   }
   template <class V>
   static V mean_of(V theta_i, V theta_j) {
