@@ -198,9 +198,9 @@ TEST(MackieRoll, RunsAlikeOnAnyThreadsAndInPieces) {
   EXPECT_NE(run_roll(run, 6, {1, {}}), once);
   EXPECT_EQ(once["series"]["time"].size(), 4U);
   EXPECT_EQ(once["fields"]["samples"], 3);
-  // A hot floor and a cold ceiling around a fluid between the two.
-  EXPECT_LT(once["series"]["floor"].back(), 0);
-  EXPECT_GT(once["series"]["ceiling"].back(), 0);
+  // A hot and a cold wall around a fluid between the two.
+  EXPECT_LT(once["series"]["hot"].back(), 0);
+  EXPECT_GT(once["series"]["cold"].back(), 0);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "experiments/reproduce/experiments.hpp"
@@ -13,6 +14,7 @@ using nlohmann::json;
 
 constexpr std::size_t particles = 30000;
 constexpr double time_step = 0.01, duration = 120, sample_every = 0.1;
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double fit_from = 20, fit_to = 70;
 constexpr double start_temperature = 1;
 constexpr WallRepulsion repulsion = mackie_repulsion;
@@ -89,11 +91,14 @@ class Courses {
   const Series& mean() const { return mean_; }          ///< <theta>
   const Series& internal() const { return internal_; }  ///< 1/<1/theta>
 
-  /// A number of every run: mean, with the interval of their scatter.
+  /// A number of every run: mean, with the interval of their scatter; no numbers if a run has none.
   template <class Number>
   Interval across(const Series& series, Number&& number) const {
     std::vector<Eigen::VectorXd> values;
-    for (const auto& one : series) values.push_back(Eigen::VectorXd::Constant(1, number(one)));
+    for (const auto& one : series) {
+      values.push_back(Eigen::VectorXd::Constant(1, number(one)));
+      if (!std::isfinite(values.back()[0])) return {none, none, none};
+    }
     return interval_of(estimate_mean(values));
   }
   Interval least(const Series& series) const {
@@ -110,7 +115,7 @@ class Courses {
   Interval time_above(const Series& series, double level) const {
     return across(series, [&](const Eigen::VectorXd& one) {
       Eigen::Index at = one.size() - 1;
-      if (one[at] < level) return std::numeric_limits<double>::quiet_NaN();
+      if (one[at] < level) return none;
       while (at > 0 && one[at - 1] >= level) --at;
       return times_[at];
     });

@@ -15,34 +15,37 @@ using nlohmann::json;
 constexpr double sample_every = 1;
 constexpr std::size_t bins = 24;
 
-/// Hard walls on all faces but those across y, which are periodic: floor and ceiling reservoirs,
-/// sides without heat.
+/// The place of the hot wall; the cold one's is the next.
+std::size_t hot_face(const RollRun& run) { return run.hot_wall == HotWall::floor ? 4 : 0; }
+
+/// Hard walls on all faces but those across y, which are periodic: two opposite ones reservoirs,
+/// the others without heat.
 Box roll_box(const FluidParameters& fluid, const RollRun& run) {
   const double side = roll_side();
   Box box{Vector(side, static_cast<double>(run.particles) / (side * side), side)};
-  box.walls[0] = box.walls[1] = Wall{};
-  box.walls[4] = mackie_reservoir(fluid, hot, {});
-  box.walls[5] = mackie_reservoir(fluid, cold, {});
+  for (const std::size_t face : {0, 1, 4, 5}) box.walls[face] = Wall{};
+  box.walls[hot_face(run)] = mackie_reservoir(fluid, hot, {});
+  box.walls[hot_face(run) + 1] = mackie_reservoir(fluid, cold, {});
   box.gravity = Vector(0, 0, -run.gravity);
   return box;
 }
 
 class RollSeries : public Observer {
  public:
-  explicit RollSeries(double time_step) : time_step_(time_step) {}
+  RollSeries(double time_step, std::size_t hot_face) : time_step_(time_step), hot_face_(hot_face) {}
 
   void sample(System& system, std::uint64_t step) override {
     const auto& received = system.motion().surroundings;
     values_.insert(values_.end(),
                    {static_cast<double>(step) * time_step_, roll_flow(system),
                     system.kinetic_energy(), system.internal_energy(), system.potential_energy(),
-                    received[4].energy, received[5].energy});
+                    received[hot_face_].energy, received[hot_face_ + 1].energy});
   }
   json save() override { return {{"values", to_bytes(values_)}}; }
   void load(const json& saved) override { values_ = from_bytes<double>(saved.at("values")); }
   json to_json() const {
-    static const std::vector<std::string> names = {"time",      "roll",  "kinetic", "internal",
-                                                   "potential", "floor", "ceiling"};
+    static const std::vector<std::string> names = {"time",      "roll", "kinetic", "internal",
+                                                   "potential", "hot",  "cold"};
     json columns = json::object();
     for (std::size_t n = 0; n < values_.size(); ++n) {
       columns[names[n % names.size()]].push_back(values_[n]);
@@ -52,6 +55,7 @@ class RollSeries : public Observer {
 
  private:
   double time_step_;
+  std::size_t hot_face_;
   std::vector<double> values_;
 };
 
@@ -79,7 +83,7 @@ json run_roll(const RollRun& run, std::uint64_t seed, const Workplace& workplace
   const Noise noise(seed, 0);
   System system(Fluid(fluid), box,
                 mackie_in_law(fluid, box, run.particles, 0.5 * (hot + cold), 0, noise), noise);
-  RollSeries series(run.time_step);
+  RollSeries series(run.time_step, hot_face(run));
   Fields fields(system, {bins, 1, bins});
   const auto steps = [&](double time) {
     return static_cast<std::uint64_t>(std::llround(time / run.time_step));
@@ -91,7 +95,8 @@ json run_roll(const RollRun& run, std::uint64_t seed, const Workplace& workplace
           {{"seed", seed},
            {"method", run.method.name},
            {"particles", run.particles},
-           {"gravity", run.gravity}});
+           {"gravity", run.gravity},
+           {"hot_face", hot_face(run)}});
   return {{"series", series.to_json()}, {"fields", fields.to_json()}};
 }
 
