@@ -61,8 +61,9 @@ class EndPointIteration {
       round_.evaluate(system, momentum, energy);
       take_energies(system, tolerance);
       if (moving_.empty() || is_explicit) {
-        system.move(dt);
+        start_velocity_ = system.motion().velocity;
         system.set_motion(round_.trial());
+        system.move_along(start_velocity_, dt);
         return;
       }
     }
@@ -89,6 +90,7 @@ class EndPointIteration {
   }
 
   EndPointRound round_;
+  std::vector<Vector> start_velocity_;
   std::vector<std::uint32_t> moving_;  ///< ids that have not converged
 };
 

@@ -387,6 +387,10 @@ void PairBlocks::split_by_kind(const PairIndices& pairs, const CellGrid& cells,
 void PairBlocks::group(PairBlock& block, const CellGrid& cells) {
   if (block.grouped) return;
   block.grouped = true;
+  if (single_ && species_ > 1) {  // what was found has been sorted by kind
+    block.groups = by_ids(cells);
+    return;
+  }
   thread_local std::vector<std::uint32_t> group;
   auto groups = single_ ? groups_in_order(block.found, used_, group)
                         : groups_of_few(block.found, used_, group);

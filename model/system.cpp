@@ -494,7 +494,7 @@ Vector System::reflect(Vector position, std::size_t place, Surroundings& receive
   return position;
 }
 
-void System::move(double duration) {
+void System::move_along(const std::vector<Vector>& velocity, double duration) {
   if (frozen_) return;
   const bool walled = box_.is_walled(0) || box_.is_walled(1) || box_.is_walled(2);
   // Shares that do not depend on the threads: sums then do not either.
@@ -505,7 +505,7 @@ void System::move(double duration) {
   threads_.phases(tasks, [&](unsigned, std::size_t, std::size_t share) {
     bool all_sound = true, all_inside = true;
     for (std::size_t i = size() * share / shares; i < size() * (share + 1) / shares; ++i) {
-      Vector moved = box_.wrap(state_.position[i] + duration * state_.velocity[i]);
+      Vector moved = box_.wrap(state_.position[i] + duration * velocity[i]);
       if (walled) moved = reflect(moved, i, received[share]);
       const bool sound_here = is_sound(i), inside_here = box_.contains(moved);
       // Whoever looks at a failed state finds every particle in the box.
@@ -525,7 +525,7 @@ void System::move(double duration) {
   // So far beyond the box that rounding leaves no image inside, or through two walls at once.
   std::vector<std::uint32_t> lost;
   for (std::size_t i = 0; i < size(); ++i) {
-    const Vector moved = box_.wrap(state_.position[i] + duration * state_.velocity[i]);
+    const Vector moved = box_.wrap(state_.position[i] + duration * velocity[i]);
     if (!box_.contains(moved)) lost.push_back(state_.id[i]);
   }
   throw StepFailure(FailureCause::non_finite, std::move(lost));

@@ -102,7 +102,10 @@ class System {
   /// Momenta += conservative force x duration, the forces of the present positions.
   void kick(double duration);
   /// Positions += velocity x duration, reflected where walls stand; frozen particles stay.
-  void move(double duration);
+  void move(double duration) { move_along(state_.velocity, duration); }
+  /// The same along other velocities than the present ones, which walls turn round all the same:
+  /// for a method that moves with the velocities of a step's start when it has those of its end.
+  void move_along(const std::vector<Vector>& velocity, double duration);
 
   /// Conservative force on each particle; computed once per set of positions.
   const std::vector<Vector>& conservative_force();

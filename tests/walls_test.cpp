@@ -81,6 +81,32 @@ TEST_P(Walls, ReceiveWhatTheFluidGives) {
   }
 }
 
+// Alone, so that nothing but the wall acts; moved along the velocity of whichever end of the step.
+TEST_P(Walls, TurnRoundWhoReachesThem) {
+  const Method& method = *GetParam();
+  const auto f = small_fluid({method.closures[0], HeatForm::temperature, false}, boltzmann);
+  Box box{Vector::Constant(6)};
+  for (auto& wall : box.walls) wall = Wall{};
+  State state;
+  state.position = {Vector(5.905, 3, 3), Vector(3, 0.105, 1)};
+  state.velocity = {Vector(1, 0, 0), Vector(0, -1, 0)};
+  state.internal_energy = {1, 1};
+  state.id = {0, 1};
+  System system(Fluid(f), box, state, Noise(7, 0));
+  const auto integrator = method.make({});
+  run(*integrator, system, step_size, 1, steps + 1);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const bool first = system.state().id[i] == 0;
+    const Vector end = first ? Vector(5.895, 3, 3) : Vector(3, 0.095, 1);
+    EXPECT_LT((system.state().position[i] - end).norm(), rounding);
+    EXPECT_LT((system.state().velocity[i] - (first ? Vector(-1, 0, 0) : Vector(0, 1, 0))).norm(),
+              rounding);
+  }
+  const auto& received = system.motion().surroundings;
+  EXPECT_NEAR(received[1].momentum[0], 2 * f.mass, rounding);
+  EXPECT_NEAR(received[2].momentum[1], -2 * f.mass, rounding);
+}
+
 TEST_P(Walls, GiveTheSameBitsForAnyNumberOfThreads) {
   const Method& method = *GetParam();
   const auto f = small_fluid({method.closures[0], HeatForm::temperature, true}, boltzmann);
