@@ -70,7 +70,7 @@ function spec_of(chart, labels, place) {
   const {x, y, floor} = encodings(chart, rows);
   const {colour, shape} = method_scales(labels);
   const drawn = labels.filter((label) => rows.some((row) => row.name === label));
-  const legend = {title: null, values: drawn, symbolOpacity: 1, ...place};
+  const legend = {title: null, values: drawn, symbolOpacity: 1, labelLimit: 460, ...place};
   const channel = (scale) => ({field: 'name', type: 'nominal', scale, legend});
   const stroke = channel(colour);
   const opacity = {condition: {param: 'picked', value: 1}, value: 0.1};
