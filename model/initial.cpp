@@ -1,5 +1,6 @@
 #include "model/initial.hpp"
 
+#include <algorithm>
 #include <boost/random/gamma_distribution.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
@@ -21,26 +22,44 @@ void for_each_island(Layout layout, const State& state, Visit&& visit) {
   }
 }
 
-/// Standard normal velocities without momentum; along x alone for pairs.
-void draw_directions(Layout layout, const Noise& noise, State& state) {
+/// Mass of a particle in units of the first species'.
+double relative_mass(const Fluid& fluid, const State& state, std::size_t place) {
+  return fluid.mass(state.species_of(place)) / fluid.mass();
+}
+
+double shape_of(const Fluid& fluid, std::size_t species) {
+  return heat_capacity(fluid, species) / fluid.boltzmann() + 1;
+}
+
+/// Normal velocities without momentum, standard ones for the mass of the first species; along x
+/// alone for pairs.
+void draw_directions(const Fluid& fluid, Layout layout, const Noise& noise, State& state) {
   for (std::size_t i = 0; i < state.size(); ++i) {
     auto stream = noise.particle_stream(state.id[i], Purpose::initial_velocity);
     boost::random::normal_distribution<double> normal;
     const int components = layout == Layout::pairs ? 1 : 3;
     state.velocity[i] = Vector::Zero();
     for (int axis = 0; axis < components; ++axis) state.velocity[i][axis] = normal(stream);
+    state.velocity[i] /= std::sqrt(relative_mass(fluid, state, i));
   }
   for_each_island(layout, state, [&](std::size_t first, std::size_t last) {
     Vector mean = Vector::Zero();
-    for (std::size_t i = first; i < last; ++i) mean += state.velocity[i];
-    mean /= static_cast<double>(last - first);
+    double mass = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      mean += relative_mass(fluid, state, i) * state.velocity[i];
+      mass += relative_mass(fluid, state, i);
+    }
+    mean /= mass;
     for (std::size_t i = first; i < last; ++i) state.velocity[i] -= mean;
   });
 }
 
-double squared_speeds(const State& state, std::size_t first, std::size_t last) {
+/// Twice the kinetic energy over the mass of the first species.
+double squared_speeds(const Fluid& fluid, const State& state, std::size_t first, std::size_t last) {
   double sum = 0;
-  for (std::size_t i = first; i < last; ++i) sum += state.velocity[i].squaredNorm();
+  for (std::size_t i = first; i < last; ++i) {
+    sum += relative_mass(fluid, state, i) * state.velocity[i].squaredNorm();
+  }
   return sum;
 }
 
@@ -72,20 +91,28 @@ double MicrocanonicalLaw::internal_energy_skewness() const {
   return 2 * (other - shape) * std::sqrt(total + 1) / ((total + 2) * std::sqrt(shape * other));
 }
 
-double heat_capacity(const Fluid& fluid) {
+double heat_capacity(const Fluid& fluid, std::size_t species) {
   const auto& f = fluid.parameters();
-  return fluid.has_constant_heat_capacities()
-             ? f.heat_capacity
-             : fluid.heat_capacity(fluid.internal_energy(f.temperature));
+  if (fluid.has_constant_heat_capacities()) {
+    return species == 0 ? f.heat_capacity : f.further_species[species - 1].heat_capacity;
+  }
+  const auto& state = fluid.equation_of_state(species);
+  return 1 / state.inverse_heat_capacity(state.internal_energy(f.temperature));
 }
 
-MicrocanonicalLaw microcanonical_law(const Fluid& fluid, Layout layout, std::size_t particles) {
+MicrocanonicalLaw microcanonical_law(const Fluid& fluid, Layout layout, std::size_t particles,
+                                     const std::vector<std::uint8_t>& species) {
   MicrocanonicalLaw law;
   law.particles = island_size(layout, particles);
   law.islands = particles / law.particles;
   law.degrees = layout == Layout::pairs ? 1 : 3 * (static_cast<double>(particles) - 1);
   law.boltzmann = fluid.boltzmann();
-  law.shape = heat_capacity(fluid) / fluid.boltzmann() + 1;
+  law.shape = shape_of(fluid, 0);
+  for (std::size_t i = 0; i < std::min(law.particles, species.size()); ++i) {
+    const double excess = shape_of(fluid, species[i]) - law.shape;
+    law.excess_shape += excess;
+    law.alike = law.alike && excess == 0;
+  }
   return law;
 }
 
@@ -127,15 +154,15 @@ State place(const Box& box, Layout layout, Placement placement, std::size_t part
 
 void draw_microcanonical(const Fluid& fluid, Layout layout, double energy, const Noise& noise,
                          State& state) {
-  const auto law = microcanonical_law(fluid, layout, state.size());
-  draw_directions(layout, noise, state);
+  draw_directions(fluid, layout, noise, state);
   for (std::size_t i = 0; i < state.size(); ++i) {
     auto stream = noise.particle_stream(state.id[i], Purpose::initial_energy);
-    state.internal_energy[i] = boost::random::gamma_distribution<double>(law.shape)(stream);
+    const double shape = shape_of(fluid, state.species_of(i));
+    state.internal_energy[i] = boost::random::gamma_distribution<double>(shape)(stream);
   }
   for_each_island(layout, state, [&](std::size_t first, std::size_t last) {
     // Kinetic energy m v^2/2 of unit normals is a Gamma(degrees/2) variate in units of m.
-    double sum = 0.5 * squared_speeds(state, first, last);
+    double sum = 0.5 * squared_speeds(fluid, state, first, last);
     for (std::size_t i = first; i < last; ++i) sum += state.internal_energy[i];
     const double scale = energy / sum;
     for (std::size_t i = first; i < last; ++i) {
@@ -147,7 +174,7 @@ void draw_microcanonical(const Fluid& fluid, Layout layout, double energy, const
 
 void draw_canonical(const Fluid& fluid, Layout layout, double temperature, const Noise& noise,
                     State& state) {
-  draw_directions(layout, noise, state);
+  draw_directions(fluid, layout, noise, state);
   const double spread = std::sqrt(fluid.boltzmann() * temperature / fluid.mass());
   for (std::size_t i = 0; i < state.size(); ++i) {
     state.velocity[i] *= spread;
@@ -157,29 +184,37 @@ void draw_canonical(const Fluid& fluid, Layout layout, double temperature, const
 
 void draw_off_equilibrium(const Fluid& fluid, Layout layout, double energy, const Noise& noise,
                           State& state) {
-  const auto law = microcanonical_law(fluid, layout, state.size());
+  const auto law = microcanonical_law(fluid, layout, state.size(), state.species);
   draw_alike(fluid, layout, energy, 0.5 * law.kinetic_energy(energy), noise, state);
 }
 
 void draw_alike(const Fluid& fluid, Layout layout, double energy, double kinetic,
                 const Noise& noise, State& state) {
-  draw_directions(layout, noise, state);
+  draw_directions(fluid, layout, noise, state);
   for_each_island(layout, state, [&](std::size_t first, std::size_t last) {
-    const double present = 0.5 * fluid.mass() * squared_speeds(state, first, last);
+    const double present = 0.5 * fluid.mass() * squared_speeds(fluid, state, first, last);
     const double scale = present > 0 ? std::sqrt(kinetic / present) : 0;  // one particle: none
+    const auto relative = [&](std::size_t i) {
+      const double temperature = fluid.parameters().temperature;
+      const auto& particle = fluid.equation_of_state(state.species_of(i));
+      return particle.internal_energy(temperature) / fluid.internal_energy(temperature);
+    };
+    double energies = 0;  // in units of the first species' at one temperature
+    for (std::size_t i = first; i < last; ++i) energies += relative(i);
     for (std::size_t i = first; i < last; ++i) {
       state.velocity[i] *= scale;
-      state.internal_energy[i] = (energy - kinetic) / static_cast<double>(last - first);
+      state.internal_energy[i] = (energy - kinetic) / energies * relative(i);
     }
   });
 }
 
 void draw_given_spread(const Fluid& fluid, Layout layout, double spread, double temperature,
                        const Noise& noise, State& state) {
-  draw_directions(layout, noise, state);
+  draw_directions(fluid, layout, noise, state);
   for (std::size_t i = 0; i < state.size(); ++i) {
     state.velocity[i] *= spread;
-    state.internal_energy[i] = fluid.internal_energy(temperature);
+    const auto& particle = fluid.equation_of_state(state.species_of(i));
+    state.internal_energy[i] = particle.internal_energy(temperature);
   }
 }
 

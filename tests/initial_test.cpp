@@ -266,6 +266,93 @@ TEST(MicrocanonicalLaw, OfPairsIsThatOfIslandsOfTwoWithOneDegree) {
   EXPECT_EQ(fluid.degrees, 3 * 59);
 }
 
+// ---- Several species. --------------------------------------------------------------------------
+
+Fluid two_species() {
+  auto f = fluid_with(1.5).parameters();
+  f.further_species = {{.mass = 5, .heat_capacity = 6}};
+  return Fluid(f);
+}
+
+/// Everything asked of draws of one particle of the first species and two of the second.
+Complaints check_species(const Draw& draw) {
+  const Fluid fluid = two_species();
+  const double energy = 40, shapes[] = {4, 13, 13}, masses[] = {1.25, 5, 5};
+  const double total = 3 + 4 + 13 + 13;
+  std::vector<double> kinetic, u[2], square[2];
+  Complaints complaints;
+  for (std::uint64_t replica = 0; replica < 30000; ++replica) {
+    State state = place(small_box(), Layout::fluid, Placement::lattice, 3, 0, Noise(5, replica));
+    state.species = {0, 1, 1};
+    draw(fluid, Layout::fluid, energy, Noise(5, replica), state);
+    double k = 0, internal = 0;
+    Vector momentum = Vector::Zero();
+    for (std::size_t i = 0; i < 3; ++i) {
+      k += 0.5 * masses[i] * state.velocity[i].squaredNorm();
+      internal += state.internal_energy[i];
+      momentum += masses[i] * state.velocity[i];
+    }
+    if (std::abs(k + internal - energy) > 1e-12) complaints.insert("energy");
+    if (momentum.norm() > 1e-12) complaints.insert("momentum");
+    kinetic.push_back(k / energy);
+    for (const std::size_t i : {0U, 1U}) {
+      u[i].push_back(state.internal_energy[i] / energy);
+      const double x = state.velocity[i][0];
+      square[i].push_back(0.5 * masses[i] * x * x / energy / (1 - masses[i] / 11.25));
+    }
+  }
+  if (!has_beta_law(kinetic, 3, total - 3)) complaints.insert("law of K");
+  for (const std::size_t i : {0U, 1U}) {
+    if (!has_beta_law(u[i], shapes[i], total - shapes[i])) complaints.insert("law of u");
+    if (!has_beta_moments(u[i], shapes[i], total - shapes[i])) complaints.insert("moments of u");
+    if (!has_beta_law(square[i], 0.5, total - 0.5)) complaints.insert("law of p");
+  }
+  return complaints;
+}
+
+TEST(Microcanonical, DrawsOfSpeciesFollowTheExactLaw) {
+  EXPECT_EQ(check_species(draw_microcanonical), Complaints{});
+  const auto law = microcanonical_law(two_species(), Layout::fluid, 3, {0, 1, 1});
+  EXPECT_DOUBLE_EQ(law.total_shape(), 33);
+  EXPECT_FALSE(law.alike);
+  EXPECT_DOUBLE_EQ(law.internal_energy_mean(33), 10);
+  EXPECT_DOUBLE_EQ(law.internal_temperature(16), 1);
+  EXPECT_TRUE(microcanonical_law(two_species(), Layout::fluid, 3, {0, 0, 0}).alike);
+}
+
+TEST(MicrocanonicalFaults, OfSpeciesAreSeen) {
+  // Particles whose energies are drawn as if all were of the first species.
+  const auto one_shape = check_species(
+      [](const Fluid& f, Layout layout, double energy, const Noise& noise, State& state) {
+        auto parameters = f.parameters();
+        parameters.further_species[0].heat_capacity = parameters.heat_capacity;
+        draw_microcanonical(Fluid(parameters), layout, energy, noise, state);
+      });
+  EXPECT_TRUE(one_shape.count("law of u"));
+  // And velocities as if all had its mass.
+  const auto one_mass = check_species(
+      [](const Fluid& f, Layout layout, double energy, const Noise& noise, State& state) {
+        auto parameters = f.parameters();
+        parameters.further_species[0].mass = parameters.mass;
+        draw_microcanonical(Fluid(parameters), layout, energy, noise, state);
+      });
+  EXPECT_TRUE(one_mass.count("momentum"));
+  EXPECT_TRUE(one_mass.count("energy"));
+  EXPECT_TRUE(check_species(draw_off_equilibrium).count("law of u"));
+}
+
+TEST(OffEquilibrium, GivesEverySpeciesOneTemperature) {
+  const Fluid fluid = two_species();
+  State state = place(small_box(), Layout::fluid, Placement::lattice, 9, 0, Noise(5, 0));
+  state.species = {0, 1, 1, 0, 1, 0, 0, 1, 0};
+  draw_off_equilibrium(fluid, Layout::fluid, 40, Noise(5, 0), state);
+  for (std::size_t i = 0; i < 9; ++i) {
+    const auto& particle = fluid.equation_of_state(state.species[i]);
+    EXPECT_NEAR(particle.temperature(state.internal_energy[i]),
+                fluid.temperature(state.internal_energy[0]), 1e-12);
+  }
+}
+
 // ---- Places. -----------------------------------------------------------------------------------
 
 /// How many others are within the fluid's range of each particle.

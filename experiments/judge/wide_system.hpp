@@ -56,6 +56,7 @@ inline State in_order(const State& state, const std::vector<std::size_t>& order)
     permuted.velocity.push_back(state.velocity[place]);
     permuted.internal_energy.push_back(state.internal_energy[place]);
     permuted.id.push_back(state.id[place]);
+    if (!state.species.empty()) permuted.species.push_back(state.species[place]);
   }
   return permuted;
 }
