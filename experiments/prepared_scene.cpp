@@ -18,16 +18,26 @@ double relative_kinetic_energy(const System& system, std::size_t islands) {
   const std::size_t size = system.size() / islands;
   double energy = system.kinetic_energy();
   for (std::size_t first = 0; first + size <= system.size(); first += size) {
+    // In units of the first species' mass.
     Vector sum = Vector::Zero();
-    for (std::size_t i = first; i < first + size; ++i) sum += system.state().velocity[i];
-    energy -= 0.5 * system.fluid().mass() * sum.squaredNorm() / static_cast<double>(size);
+    double masses = 0;
+    for (std::size_t i = first; i < first + size; ++i) {
+      const double mass = system.mass(i) / system.fluid().mass();
+      sum += mass * system.state().velocity[i];
+      masses += mass;
+    }
+    energy -= 0.5 * system.fluid().mass() * sum.squaredNorm() / masses;
   }
   return energy;
 }
 
 double centre_of_mass_energy(const Scene& scene) {
-  return 0.5 * scene.fluid.mass * static_cast<double>(scene.particles) *
-         scene.frame_velocity.squaredNorm();
+  double masses = static_cast<double>(scene.particles);  // in units of the first species'
+  for (const auto species : scene_species(scene)) {
+    if (species == 0) continue;
+    masses += scene.fluid.further_species[species - 1u].mass / scene.fluid.mass - 1;
+  }
+  return 0.5 * scene.fluid.mass * masses * scene.frame_velocity.squaredNorm();
 }
 
 }  // namespace
@@ -58,20 +68,25 @@ double PreparedScene::thermal_kinetic_energy() const {
 double PreparedScene::ideal_energy() const {
   const double temperature = scene_.fluid.temperature;
   if (fluid_.has_constant_heat_capacities()) {
-    return microcanonical_law(fluid_, scene_.layout, scene_.particles).energy_at(temperature);
+    return full_law().energy_at(temperature);
+  }
+  const double first = fluid_.internal_energy(temperature);
+  double further = 0;  // of the other species beyond the first one's
+  for (const auto species : scene_species(scene_)) {
+    further += fluid_.equation_of_state(species).internal_energy(temperature) - first;
   }
   return 0.5 * kinetic_degrees() * fluid_.boltzmann() * temperature +
-         static_cast<double>(island_size()) * fluid_.internal_energy(temperature);
+         static_cast<double>(island_size()) * first + further;
 }
 
 void PreparedScene::find_law() {
-  // Walls and slabs take momentum and heat, and species, or other equations of state, share
-  // energies in other ways.
-  if (!fluid_.fluctuates() || box_.is_bounded() || fluid_.species() > 1 || scene_.heat_slabs ||
+  // Walls and slabs take momentum and heat, and other equations of state share energies in other
+  // ways.
+  if (!fluid_.fluctuates() || box_.is_bounded() || scene_.heat_slabs ||
       !fluid_.has_constant_heat_capacities()) {
     return;
   }
-  auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
+  auto law = full_law();
   // A pair at a fixed distance, or two particles, keep u_i - u_j without conduction; a solid's
   // friction, in few fixed directions, keeps combinations of momenta; without friction nothing ties
   // the kinetic energy to the internal energies.
@@ -89,14 +104,16 @@ void PreparedScene::find_law() {
   if (!law_) return;
   const double total = law_->total_shape();
   // Without kinetic degrees the momenta have no law; the binned one is then not used.
-  distributions_ = ExactDistributions{BinnedLaw::signed_root(total - 0.5),
-                                      BinnedLaw::beta(law_->shape, total - law_->shape)};
+  distributions_ = ExactDistributions{BinnedLaw::signed_root(total - 0.5), std::nullopt};
+  if (law_->alike) {
+    distributions_->internal_energy = BinnedLaw::beta(law_->shape, total - law_->shape);
+  }
 }
 
 void PreparedScene::prepare_ideal() {
   System system = start(0);
   total_energy_ = system.total_energy();
-  const auto islands = microcanonical_law(fluid_, scene_.layout, scene_.particles).islands;
+  const auto islands = full_law().islands;
   double energy = system.internal_energy();
   if (law_ && law_->degrees > 0) energy += relative_kinetic_energy(system, islands);
   island_energy_ = energy / static_cast<double>(islands);
@@ -112,9 +129,11 @@ void PreparedScene::reference_from_law() {
   const double e = island_energy_;
   references_["internal_temperature"] = {law_->internal_temperature(e), 0};
   references_["internal_energy_mean"] = {law_->internal_energy_mean(e), 0};
-  references_["internal_energy_variance"] = {law_->internal_energy_variance(e), 0};
-  references_["internal_energy_skewness"] = {law_->internal_energy_skewness(), 0};
-  references_["internal_energy_distance"] = {0, 0};
+  if (law_->alike) {
+    references_["internal_energy_variance"] = {law_->internal_energy_variance(e), 0};
+    references_["internal_energy_skewness"] = {law_->internal_energy_skewness(), 0};
+    references_["internal_energy_distance"] = {0, 0};
+  }
   if (law_->degrees == 0) return;
   references_["kinetic_temperature"] = {law_->kinetic_temperature(e), 0};
   references_["kinetic_share"] = {1, 0};
@@ -126,6 +145,10 @@ void PreparedScene::reference_from_law() {
   }
 }
 
+MicrocanonicalLaw PreparedScene::full_law() const {
+  return microcanonical_law(fluid_, scene_.layout, scene_.particles, scene_species(scene_));
+}
+
 State PreparedScene::on_lattice(const Noise& numbers) const {
   State state = place(box_, scene_.layout, Placement::lattice, scene_.particles,
                       scene_.pair_distance, numbers);
@@ -134,7 +157,7 @@ State PreparedScene::on_lattice(const Noise& numbers) const {
 }
 
 void PreparedScene::prepare_with_repulsion() {
-  const auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
+  const auto law = full_law();
   ConfigurationChain pilot(fluid_, box_, on_lattice({pilot_seed, 0}), {pilot_seed, 0});
   for (int path = 0; path < relaxation_paths; ++path) pilot.relax();
   double potential = 0;
@@ -214,13 +237,13 @@ void PreparedScene::sample_canonical_configurations() {
 void PreparedScene::reference_of_shares() {
   references_["kinetic_share"] = {1, 0};
   references_["momentum_distance"] = {0, 0};
-  references_["internal_energy_distance"] = {0, 0};
+  if (law_->alike) references_["internal_energy_distance"] = {0, 0};
 }
 
 void PreparedScene::reference_from_chain(const Eigen::MatrixXd& samples) {
   reference_of_shares();
   if (scene_.frozen) return;  // every replica keeps a configuration of its own
-  const auto law = microcanonical_law(fluid_, scene_.layout, scene_.particles);
+  const auto law = full_law();
   const double n = static_cast<double>(scene_.particles), k = fluid_.boltzmann();
   const double total = law.total_shape(), a = law.shape;
   const auto set = [&](const char* name, const Eigen::MatrixXd& columns,
@@ -242,7 +265,8 @@ void PreparedScene::reference_from_chain(const Eigen::MatrixXd& samples) {
       [&](const Eigen::VectorXd& m) { return m[0] / (k * (total - 1) * m[1]); });
   set("pressure", column(4) * (n / (total * box_.volume())) + column(1) / (3 * box_.volume()),
       mean);
-  set("internal_energy_mean", column(4) * (a / total), mean);
+  set("internal_energy_mean", column(4) * ((a + law.excess_shape / n) / total), mean);
+  if (!law.alike) return;
   Eigen::MatrixXd powers(samples.rows(), 3);
   powers.col(0) = column(4) * (a / total);
   powers.col(1) = column(4).array().square() * (a * (a + 1) / (total * (total + 1)));
@@ -269,6 +293,7 @@ System PreparedScene::start(unsigned replica) const {
                                                                        : scene_.initial_positions,
                   scene_.particles, scene_.pair_distance, numbers)
           : configurations_[replica];
+  state.species = scene_species(scene_);
   if (scene_.initial_state == InitialState::canonical) {
     // Off equilibrium it is half as hot.
     draw_canonical(fluid_, scene_.layout, scene_.fluid.temperature * (off ? 0.5 : 1), numbers,
@@ -289,8 +314,6 @@ System PreparedScene::start(unsigned replica) const {
       state.velocity[i] = scene_.initial_velocities[i];
     }
   }
-  if (state.species.empty()) state.species = scene_species(scene_);
-  scale_to_species(state);
   boost_frame(scene_.frame_velocity, state);
   return System(fluid_, box_, std::move(state), numbers, scene_.frozen);
 }
@@ -303,23 +326,6 @@ void PreparedScene::draw_start(double energy, bool off, const Noise& numbers, St
   }
   const double kinetic = 0.5 * kinetic_degrees() * fluid_.boltzmann() * scene_.fluid.temperature;
   draw_alike(fluid_, scene_.layout, energy, off ? 0.5 * kinetic : kinetic, numbers, state);
-}
-
-void PreparedScene::scale_to_species(State& state) const {
-  if (state.species.empty()) return;
-  Vector momentum = Vector::Zero();
-  double mass = 0;
-  for (std::size_t i = 0; i < state.size(); ++i) {
-    const auto species = state.species_of(i);
-    state.velocity[i] *= std::sqrt(fluid_.mass() / fluid_.mass(species));
-    const double theta = fluid_.temperature(state.internal_energy[i]);
-    if (!fluid_.isothermal()) {
-      state.internal_energy[i] = fluid_.equation_of_state(species).internal_energy(theta);
-    }
-    momentum += fluid_.mass(species) * state.velocity[i];
-    mass += fluid_.mass(species);
-  }
-  for (auto& velocity : state.velocity) velocity -= momentum / mass;
 }
 
 std::optional<Reference> PreparedScene::reference(std::string_view observable) const {

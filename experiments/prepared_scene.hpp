@@ -85,9 +85,9 @@ class PreparedScene {
   void sample_canonical_configurations();
   void reference_from_law();
   void reference_of_shares();
+  /// The law of all particles as if friction and conduction acted.
+  MicrocanonicalLaw full_law() const;
   State on_lattice(const Noise& numbers) const;
-  /// Gives a state drawn for the first species the same temperatures in all of them, at rest.
-  void scale_to_species(State& state) const;
   void reference_from_chain(const Eigen::MatrixXd& samples);
   Noise noise(unsigned replica) const { return {seed_, replica}; }
 

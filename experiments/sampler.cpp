@@ -79,11 +79,13 @@ void Sampler::take_island(const State& state, std::size_t first, std::size_t las
   sums[Primary::kinetic] += whole.kinetic * scale;
   sums[Primary::kinetic_share] += whole.kinetic / (whole.kinetic + whole.internal);
   const std::size_t block = taken_ * blocks / static_cast<std::size_t>(record_.samples.rows());
-  const double islanders = static_cast<double>(last - first);
+  double masses = 0;  // in units of the first species'
+  for (std::size_t i = first; i < last; ++i) {
+    masses += fluid.mass(state.species_of(i)) / fluid.mass();
+  }
   // Of a momentum's square: a share of twice the energy, or k T of the bath.
   const double unit =
       fluid.isothermal() ? fluid.boltzmann() * fluid.parameters().temperature : 2 * energy;
-  const double momentum_scale = std::sqrt(fluid.mass() / (unit * (1 - 1 / islanders)));
   const int components = prepared_.scene().layout == Layout::pairs ? 1 : 3;
   for (std::size_t i = first; i < last; ++i) {
     if (!fluid.isothermal()) {
@@ -101,6 +103,8 @@ void Sampler::take_island(const State& state, std::size_t first, std::size_t las
             .counts[exact.internal_energy->bin(state.internal_energy[i] / energy)];
     }
     if (components == 1 && i > first) continue;  // the partner's momentum is the opposite
+    const double mass = fluid.mass(state.species_of(i));
+    const double momentum_scale = std::sqrt(mass / (unit * (1 - mass / fluid.mass() / masses)));
     for (int axis = 0; axis < components; ++axis) {
       const double v = state.velocity[i][axis] - whole.velocity[axis];
       ++record_.momentum_blocks[block].counts[exact.momentum.bin(v * momentum_scale)];
