@@ -97,19 +97,25 @@ TEST(EntropyCourse, FindsWhenTheEntropyFalls) {
   EXPECT_GT(course.fall.to, 30U);
 }
 
-class PairBins : public testing::TestWithParam<bool> {};
+enum class Kind { with_internal_energies, isothermal, two_species };
+
+class PairBins : public testing::TestWithParam<Kind> {
+ protected:
+  static two_body::Bench bench() {
+    if (GetParam() == Kind::isothermal) return two_body::make_isothermal_bench();
+    if (GetParam() == Kind::two_species) return two_body::make_isothermal_bench(4);
+    return two_body::make_bench(10, FrictionClosure::noise, HeatForm::inverse_temperature);
+  }
+};
 
 TEST_P(PairBins, HaveTheMassesOfTheExactLaw) {
-  const auto bench =
-      GetParam() ? two_body::make_isothermal_bench()
-                 : two_body::make_bench(10, FrictionClosure::noise, HeatForm::inverse_temperature);
-  const two_body::PairBins bins(bench);
+  const two_body::PairBins bins(bench());
   double total = 0;
   for (const double mass : bins.log_mass()) total += std::exp(mass);
   EXPECT_NEAR(total, 1, 1e-12);
   two_body::Pairs pairs;
   pairs.count = 50000;
-  const two_body::Ensemble exact(bench, pairs);
+  const two_body::Ensemble exact(bench(), pairs);
   std::vector<double> counts(bins.size(), 0.0);
   for (std::size_t n = 0; n < exact.size(); ++n) ++counts[bins.bin(exact.view(n))];
   const double occupied =
@@ -118,9 +124,15 @@ TEST_P(PairBins, HaveTheMassesOfTheExactLaw) {
   EXPECT_NEAR(relative_entropy(counts, bins.log_mass()), 0, z_bound * error);
 }
 
-INSTANTIATE_TEST_SUITE_P(Pairs, PairBins, testing::Bool(), [](const auto& tested) {
-  return tested.param ? "isothermal" : "with_internal_energies";
-});
+std::string kind_name(const testing::TestParamInfo<Kind>& tested) {
+  if (tested.param == Kind::isothermal) return "isothermal";
+  return tested.param == Kind::two_species ? "two_species" : "with_internal_energies";
+}
+
+INSTANTIATE_TEST_SUITE_P(Pairs, PairBins,
+                         testing::Values(Kind::with_internal_energies, Kind::isothermal,
+                                         Kind::two_species),
+                         kind_name);
 
 /// Copies of a walk on three states that goes round with `clockwise`, else the other way round; as
 /// a series of the indicators of the first two states and as transitions.
@@ -293,6 +305,60 @@ TEST(Balance, FreeEnergyRisesWithoutNoise) {
   const auto conclusion = conclusion_of(planted<WithoutNoise>("planted-without-noise"), {part});
   const auto& finding = finding_of(conclusion, part);
   EXPECT_EQ(finding.verdict, Verdict::fails) << finding.sentence;
+}
+
+/// The exact half-implicit update of a pair of equal masses, whatever the masses are.
+template <std::size_t Heaviest>
+struct ReducedMassOfEqual {
+  static Transfer<double> exchange(const Fluid& fluid, const Pair<double>& pair, double dt) {
+    const double mu = fluid.mass(std::min(Heaviest, fluid.species() - 1)) / 2;
+    const auto law = fluid.friction(pair);
+    const double x = law.friction * dt / (2 * mu);
+    const double kick = std::sqrt(law.noise_squared * dt) * pair.noise / mu;
+    return {mu * (kick - 2 * x * pair.v) / (1 + x), 0, 0};
+  }
+};
+
+const std::string two_species_part = "free energy of isothermal pairs of two species, step 0.8";
+
+nlohmann::json two_species_record(const Candidate& candidate) {
+  for (const auto& part : balance.parts(candidate, Conditions{})) {
+    if (part.name == two_species_part) return part.run();
+  }
+  throw std::logic_error("no part " + two_species_part);
+}
+
+TEST(Balance, FreeEnergyOfTwoSpeciesFallsToMaxwellsLaw) {
+  const auto candidate = sound_isothermal();
+  const auto record = two_species_record(candidate);
+  const auto conclusion = balance.conclude(candidate, {}, {{two_species_part, record}});
+  const auto& finding = finding_of(conclusion, two_species_part);
+  EXPECT_EQ(finding.verdict, Verdict::holds) << finding.sentence;
+  EXPECT_TRUE(finding.claimed.value_or(false));
+  const double end = record["relative"].back(), error = record["error"].back();
+  EXPECT_LT(std::abs(end), z_bound * error);
+}
+
+/// Where pairs end whose velocities change c times as much as they should, at the step x: with
+///   v' = (1 - c + c a) v + c (1 - a^2)^{1/2} (kT/mu_wrong)^{1/2} W,  a = (1 - y/2)/(1 + y/2),
+/// c = mu_wrong/mu and y = x/c the variance of v is s kT/mu, and F[P] (s - 1 - ln s)/2 too high.
+double end_with_wrong_mass(double c, double x) {
+  const double a = (1 - 0.5 * x / c) / (1 + 0.5 * x / c), keeps = 1 - c + c * a;
+  const double s = c * (1 - a * a) / (1 - keeps * keeps);
+  return 0.5 * (s - 1 - std::log(s));
+}
+
+// The reduced mass is 4/5 of the first particle's mass; the bins hide some per cent of the excess.
+TEST(Balance, FreeEnergyOfTwoSpeciesShowsTheReducedMassOfOne) {
+  const auto ends_at = [](const Candidate& candidate, double c) {
+    const auto record = two_species_record(candidate);
+    const double end = record["relative"].back(), error = record["error"].back();
+    const double expected = end_with_wrong_mass(c, 0.8);
+    EXPECT_GT(end, 10 * error);
+    EXPECT_NEAR(end, expected, 0.1 * expected + z_bound * error);
+  };
+  ends_at(planted<ReducedMassOfEqual<0>>("planted-first-mass"), 0.5 / 0.8);
+  ends_at(planted<ReducedMassOfEqual<1>>("planted-second-mass"), 2 / 0.8);
 }
 
 TEST(Balance, FrictionAloneOfAMethodThatIsExactForPairsLooksAlikeBothWays) {

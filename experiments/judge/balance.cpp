@@ -9,6 +9,7 @@ namespace driftless::judge {
 namespace {
 
 constexpr double phi_over_k = 10;
+constexpr double mass_ratio = 4;  ///< of isothermal pairs of two species
 
 /// Copies or replicas and the seconds that the smallest step takes.
 struct Share {
@@ -91,6 +92,8 @@ std::vector<PairCase> pair_cases(const Candidate& candidate) {
   const auto isothermal = two_body::make_isothermal_bench();
   if (!refusal(candidate.method(), isothermal.fluid)) {
     cases.push_back({"isothermal pairs", isothermal, true});
+    cases.push_back(
+        {"isothermal pairs of two species", two_body::make_isothermal_bench(mass_ratio), true});
   }
   return cases;
 }
@@ -148,8 +151,9 @@ const Examination balance{
         "bins are narrower than the cloud, so that what is lost between them is a few per cent of "
         "the changes: a chain that keeps the exact law can show no fall, and a fall beyond the "
         "noise - counted for all pairs of times - says that the method leads away from the exact "
-        "law. Of isothermal pairs the functional F[P] = <H> + k T <ln P> [7, 8] may only fall, by "
-        "the same histogram of the velocity alone. In the stationary state <f(t) g(t + tau)> is "
+        "law. Of isothermal pairs, of one species and of two with the mass ratio 4, the functional "
+        "F[P] = <H> + k T <ln P> [7, 8] may only fall, by the same histogram of the velocity "
+        "alone. In the stationary state <f(t) g(t + tau)> is "
         "compared with its reversed twin for "
         "moments f, g of pairs and of the particles of a small ideal fluid, by Hotelling's T^2 "
         "over "

@@ -21,14 +21,19 @@ Bench make_bench(double phi_over_k, FrictionClosure closure, HeatForm form,
   return {fluid, distance, law.energy_at(f.temperature)};
 }
 
-Bench make_isothermal_bench() {
+Bench make_isothermal_bench(double mass_ratio) {
   FluidParameters f;
   f.boltzmann = 0.5;
   f.mass = 2.4;
   f.temperature = 1.3;
   f.isothermal = true;
   const double distance = 0.4, weight = (1 - distance) * (1 - distance);
-  f.friction = 0.5 * f.mass / weight;  // zeta w/mu = 1
+  double reduced_mass = 0.5 * f.mass;
+  if (mass_ratio != 1) {
+    f.further_species = {{.mass = mass_ratio * f.mass}};
+    reduced_mass = f.mass * mass_ratio / (1 + mass_ratio);
+  }
+  f.friction = reduced_mass / weight;  // zeta w/mu = 1
   return {Fluid(f), distance, 0.5 * f.boltzmann * f.temperature};
 }
 

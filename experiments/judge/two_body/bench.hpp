@@ -5,12 +5,14 @@
 /// The smallest system whose exact law is known: one isolated pair at a fixed distance.
 namespace driftless::two_body {
 
-/// One kind of pair, its particles at a fixed distance with the velocities along it.
+/// One kind of pair, its particles at a fixed distance with the velocities along it; of a fluid of
+/// two species one of each.
 struct Bench {
   Fluid fluid;
   double pair_distance;
   double energy;  ///< of a pair, kinetic plus internal
 
+  double reduced_mass() const { return fluid.law(0, fluid.species() - 1).reduced_mass(); }
   MicrocanonicalLaw law() const { return microcanonical_law(fluid, Layout::pairs, 2); }
   /// k T at the reference temperature.
   double thermal_energy() const { return fluid.boltzmann() * fluid.parameters().temperature; }
@@ -23,8 +25,9 @@ Bench make_bench(double phi_over_k, FrictionClosure closure, HeatForm form,
                  double conduction_rate = 1);
 
 /// A pair with a bath in the place of internal energies, whose relative velocity relaxes at unit
-/// rate; its energy is the mean kinetic one, k T/2.
-Bench make_isothermal_bench();
+/// rate; its energy is the mean kinetic one, k T/2. With a mass ratio other than 1 the second
+/// particle is of another species, that many times as heavy.
+Bench make_isothermal_bench(double mass_ratio = 1);
 
 /// What a pair is now: energies and relative velocity, the centre of mass's motion left out.
 struct PairView {

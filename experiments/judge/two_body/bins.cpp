@@ -37,7 +37,7 @@ int place(double position, int bins) {
 
 PairBins::PairBins(const Bench& bench) {
   if (bench.fluid.isothermal()) {
-    thermal_speed_ = std::sqrt(bench.thermal_energy() / bench.fluid.reduced_mass());
+    thermal_speed_ = std::sqrt(bench.thermal_energy() / bench.reduced_mass());
     velocities_ = 6 * most_thermal_speeds;
     log_mass_ = log_masses(velocities_, [](double s) {
       return s > 0 ? 0.5 * std::erfc(most_thermal_speeds * (1 - 2 * s) / std::sqrt(2.0)) : 0;

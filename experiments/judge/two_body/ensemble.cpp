@@ -27,12 +27,13 @@ double draw_between(double lower, double upper, double mean, double spread, Nois
 }
 
 void start_isothermal_cloud(const Bench& bench, const Noise& noise, State& state) {
-  const double speed = std::sqrt(bench.energy / bench.fluid.mass());  // of either particle
+  const double mass = bench.reduced_mass(), speed = std::sqrt(2 * bench.energy / mass);
   boost::random::normal_distribution<double> normal(3 * speed, 0.5 * speed);
   for (std::size_t i = 0; i < state.size(); i += 2) {
     auto velocities = noise.particle_stream(state.id[i], Purpose::initial_velocity);
-    state.velocity[i] = Vector(normal(velocities), 0, 0);
-    state.velocity[i + 1] = -state.velocity[i];
+    const Vector velocity(normal(velocities), 0, 0);
+    state.velocity[i] = mass / bench.fluid.mass(state.species_of(i)) * velocity;
+    state.velocity[i + 1] = -mass / bench.fluid.mass(state.species_of(i + 1)) * velocity;
   }
 }
 
@@ -61,6 +62,9 @@ System build(const Bench& bench, const Pairs& pairs) {
   const Box box = make_box(bench.fluid, Layout::pairs, particles, 1, bench.pair_distance);
   State state =
       place(box, Layout::pairs, Placement::lattice, particles, bench.pair_distance, noise);
+  for (std::size_t i = 0; i < particles && bench.fluid.species() > 1; ++i) {
+    state.species.push_back(static_cast<std::uint8_t>(i % 2));
+  }
   if (bench.fluid.isothermal()) {
     draw_canonical(bench.fluid, Layout::pairs, bench.fluid.parameters().temperature, noise, state);
   } else {
@@ -111,7 +115,7 @@ PairView Ensemble::view(std::size_t pair) const {
   const auto& motion = system_.motion();
   // e points from the second particle, at the smaller x, to the first.
   const double v = motion.velocity[2 * pair].x() - motion.velocity[2 * pair + 1].x();
-  return {v, 0.5 * bench_.fluid.reduced_mass() * v * v, motion.internal_energy[2 * pair],
+  return {v, 0.5 * bench_.reduced_mass() * v * v, motion.internal_energy[2 * pair],
           motion.internal_energy[2 * pair + 1]};
 }
 
@@ -119,14 +123,15 @@ double Ensemble::whole_energy(std::size_t pair) const {
   const auto& motion = system_.motion();
   double sum = 0;
   for (const std::size_t i : {2 * pair, 2 * pair + 1}) {
-    sum += 0.5 * bench_.fluid.mass() * motion.velocity[i].squaredNorm() + motion.internal_energy[i];
+    sum += 0.5 * system_.mass(i) * motion.velocity[i].squaredNorm() + motion.internal_energy[i];
   }
   return sum;
 }
 
 Vector Ensemble::momentum(std::size_t pair) const {
   const auto& velocity = system_.motion().velocity;
-  return bench_.fluid.mass() * (velocity[2 * pair] + velocity[2 * pair + 1]);
+  const std::size_t i = 2 * pair, j = i + 1;
+  return system_.mass(i) * velocity[i] + system_.mass(j) * velocity[j];
 }
 
 Noise::PairNormals Ensemble::normals(std::size_t pair, unsigned stage) const {
