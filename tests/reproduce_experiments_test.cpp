@@ -171,8 +171,8 @@ TEST(MarshCoveneyEntropy, AChangeTheWrongWayIsADifference) {
     EXPECT_EQ(row.verdict, wrong ? Verdict::differs : Verdict::agrees) << row.setting;
     EXPECT_NEAR(row.ours.value, (wrong ? 20 : 3) * 2e-4, 1e-12) << row.setting;
   }
-  EXPECT_EQ(rises, 4);
-  EXPECT_EQ(outcome.pictures.size(), 4U);
+  EXPECT_EQ(rises, 8);
+  EXPECT_EQ(outcome.pictures.size(), 5U);
 }
 
 }  // namespace
