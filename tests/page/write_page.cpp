@@ -1,5 +1,5 @@
-// Writes the page of a result, a judgement or reproduced experiments: write_page RESULT.json PAGE.html. The browser tests'
-// way to pages of results that no study would give.
+// Writes the page of a result, a judgement or reproduced experiments: write_page RESULT.json
+// PAGE.html. The browser tests' way to pages of results that no study would give.
 
 #include <exception>
 #include <fstream>
