@@ -5,47 +5,24 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "tests/program_call.hpp"
+
 namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
+using driftless::Outcome;
 
-struct Outcome {
-  int code;
-  std::string text;  ///< standard output and error
-};
+Outcome call(const std::string& arguments) { return driftless::call_program(arguments); }
 
-Outcome call(const std::string& arguments) {
-  const std::string command = std::string(DRIFTLESS_PROGRAM) + " " + arguments + " 2>&1";
-  FILE* pipe = popen(command.c_str(), "r");
-  Outcome outcome{-1, ""};
-  std::array<char, 4096> buffer;
-  while (const auto read = fread(buffer.data(), 1, buffer.size(), pipe)) {
-    outcome.text.append(buffer.data(), read);
-  }
-  outcome.code = WEXITSTATUS(pclose(pipe));
-  return outcome;
-}
-
-class Program : public testing::Test {
+class Program : public driftless::InFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("driftless-program-" +
-               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
     return (folder_ / name).string();
@@ -58,8 +35,6 @@ class Program : public testing::Test {
                                   std::to_string(measure) + R"(, "sample_every": 0.1},
       "replicas": 2, "seed": 3})");
   }
-
-  fs::path folder_;
 };
 
 TEST_F(Program, HelpAndVersionOfEverything) {

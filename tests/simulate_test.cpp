@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -16,26 +15,16 @@
 #include <thread>
 #include <vector>
 
+#include "tests/program_call.hpp"
+
 namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-struct Outcome {
-  int code;
-  std::string text;  ///< standard output and error
-};
+using driftless::Outcome;
 
 Outcome call(const std::string& arguments) {
-  const std::string command = std::string(DRIFTLESS_PROGRAM) + " simulate " + arguments + " 2>&1";
-  FILE* pipe = popen(command.c_str(), "r");
-  Outcome outcome{-1, ""};
-  std::array<char, 4096> buffer;
-  while (const auto read = fread(buffer.data(), 1, buffer.size(), pipe)) {
-    outcome.text.append(buffer.data(), read);
-  }
-  outcome.code = WEXITSTATUS(pclose(pipe));
-  return outcome;
+  return driftless::call_program("simulate " + arguments);
 }
 
 std::string content(const fs::path& path) {
@@ -45,19 +34,13 @@ std::string content(const fs::path& path) {
   return text.str();
 }
 
-class Simulate : public testing::Test {
+class Simulate : public driftless::InFolder {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("driftless-simulate-" +
-               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
+    InFolder::SetUp();
     scene_ = (folder_ / "scene.json").string();
     std::ofstream(scene_) << R"({"preset": "mackie-1999", "particles": 200})";
   }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string usual(const std::string& more) const {
     return scene_ + " --method groot-warren:lambda=0.65 -q -t 1 --seed 4 " + more;
   }
@@ -93,7 +76,6 @@ class Simulate : public testing::Test {
     return status;
   }
 
-  fs::path folder_;
   std::string scene_;
 };
 
