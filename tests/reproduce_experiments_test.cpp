@@ -175,5 +175,51 @@ TEST(MarshCoveneyEntropy, AChangeTheWrongWayIsADifference) {
   EXPECT_EQ(outcome.pictures.size(), 5U);
 }
 
+/// Replicas of the fluids with temperatures that are off by `slope` times the step, alike in all
+/// species but the last, which is off by another 5 % if `broken`.
+Outcome species(double slope, bool broken) {
+  const auto& asked = experiment("marsh-coveney-1998-species");
+  Records records;
+  for (const auto& part : asked.parts(quick)) {
+    if (part.name.starts_with("marsh-coveney: ")) {
+      records[part.name] = course(3);
+      continue;
+    }
+    const double wobble = 0.001 * std::sin(1e3 * static_cast<double>(records.size()));
+    std::vector<double> means(7, 1 + slope * step_of(part.name) + wobble);
+    for (std::size_t n = 3; n < 7; ++n) means[n] = 1;
+    if (broken) means[2] += 0.05;
+    records[part.name] = {{"means", means}};
+  }
+  return asked.conclude(quick, records);
+}
+
+TEST(MarshCoveneySpecies, AnErrorOfTheStepIsGoneAtVanishingSteps) {
+  const auto outcome = species(2, false);
+  for (const char* fluid : {"isothermal fluid", "energy-conserving fluid"}) {
+    const std::string quantity = std::string(fluid) == "isothermal fluid"
+                                     ? "T_kin/T of species 2"
+                                     : "T_kin of species 2 over T_int of all";
+    const auto at = [&](const std::string& setting) {
+      return row_of(outcome, quantity, "marsh-coveney, " + std::string(fluid) + ", " + setting);
+    };
+    ASSERT_TRUE(at("step 0.02"));
+    EXPECT_EQ(at("step 0.02")->verdict, Verdict::differs);
+    EXPECT_NEAR(at("step 0.02")->ours.value, 1.04, 1e-3);
+    ASSERT_TRUE(at("at vanishing"));
+    EXPECT_EQ(at("at vanishing")->verdict, Verdict::agrees);
+    EXPECT_NEAR(at("at vanishing")->ours.value, 1, 3e-3);
+  }
+  EXPECT_EQ(outcome.rows.size(), 4U * (3 + 6) + 4);
+  EXPECT_EQ(outcome.pictures.size(), 3U);
+}
+
+TEST(MarshCoveneySpecies, ASpeciesOfAnotherTemperatureIsADifference) {
+  const auto outcome = species(2, true);
+  const std::string at = "marsh-coveney, isothermal fluid, at vanishing";
+  EXPECT_EQ(row_of(outcome, "T_kin/T of species 2", at)->verdict, Verdict::differs);
+  EXPECT_EQ(row_of(outcome, "T_kin/T of species 1", at)->verdict, Verdict::agrees);
+}
+
 }  // namespace
 }  // namespace driftless::reproduce

@@ -11,6 +11,7 @@
   EXPERIMENT(mackie_1999_figures_4_6)         \
   EXPERIMENT(mackie_1999_walls)               \
   EXPERIMENT(marsh_coveney_entropy)           \
+  EXPERIMENT(marsh_coveney_species)           \
   EXPERIMENT(methods_transport)               \
   EXPERIMENT(soleymani_2020_figure_1)         \
   EXPERIMENT(soleymani_2020_figure_4)         \
