@@ -171,8 +171,8 @@ TEST(MarshCoveneyEntropy, AChangeTheWrongWayIsADifference) {
     EXPECT_EQ(row.verdict, wrong ? Verdict::differs : Verdict::agrees) << row.setting;
     EXPECT_NEAR(row.ours.value, (wrong ? 20 : 3) * 2e-4, 1e-12) << row.setting;
   }
-  EXPECT_EQ(rises, 8);
-  EXPECT_EQ(outcome.pictures.size(), 5U);
+  EXPECT_EQ(rises, 4);
+  EXPECT_EQ(outcome.pictures.size(), 4U);
 }
 
 /// Replicas of the fluids with temperatures that are off by `slope` times the step, alike in all
@@ -204,7 +204,7 @@ TEST(MarshCoveneySpecies, AnErrorOfTheStepIsGoneAtVanishingSteps) {
       return row_of(outcome, quantity, "marsh-coveney, " + std::string(fluid) + ", " + setting);
     };
     ASSERT_TRUE(at("step 0.02"));
-    EXPECT_EQ(at("step 0.02")->verdict, Verdict::differs);
+    EXPECT_EQ(at("step 0.02")->verdict, Verdict::ours_alone);
     EXPECT_NEAR(at("step 0.02")->ours.value, 1.04, 1e-3);
     ASSERT_TRUE(at("at vanishing"));
     EXPECT_EQ(at("at vanishing")->verdict, Verdict::agrees);

@@ -198,11 +198,18 @@ Row row_of(Kind kind, const std::string& quantity, const std::string& setting,
   row.quantity = quantity;
   row.setting = fmt::format("marsh-coveney, {}, {}", name_of(kind), setting);
   row.unit = "1";
+  row.ours = ours;
+  return row;
+}
+
+/// The paper speaks of the model, that is of vanishing steps.
+Row limit_row(Kind kind, const std::string& quantity, const Interval& ours) {
+  Row row = row_of(kind, quantity, "at vanishing steps", ours);
   row.paper = {1, 1, 1};
   row.paper_text = kind == Kind::isothermal ? "every species has the temperature of the bath"
                                             : "one temperature of all species";
-  row.ours = ours;
   row.verdict = compare(ours, *row.paper, resolution);
+  row.explanation = "Extrapolated in a straight line from the two smaller steps.";
   return row;
 }
 
@@ -216,18 +223,13 @@ void conclude_fluid(Kind kind, const Conditions& conditions, const Records& reco
       values.push_back(measured(conditions, records, kind, step, quantity));
       const auto& ours = values.back();
       Row row = row_of(kind, quantity.name, fmt::format("step {:g}", step), ours);
-      if (row.verdict == Verdict::differs) {
-        row.explanation =
-            "An error of the explicit step, in proportion to it; see the value at vanishing steps.";
-      }
+      row.explanation = "The explicit step is wrong in proportion to it.";
       outcome.rows.push_back(row);
       if (std::isfinite(ours.value)) {
         series.points.push_back({step, ours.value, ours.low, ours.high});
       }
     }
-    Row row = row_of(kind, quantity.name, "at vanishing steps", at_vanishing_steps(values));
-    row.explanation = "Extrapolated in a straight line from the two smaller steps.";
-    outcome.rows.push_back(row);
+    outcome.rows.push_back(limit_row(kind, quantity.name, at_vanishing_steps(values)));
     chart.series.push_back(std::move(series));
   }
   const judge::Point from{0, 1, {}, {}}, to{steps().front(), 1, {}, {}};
