@@ -62,9 +62,9 @@ void run_kept_parts(std::vector<KeptPart>& parts, const KeptRun& run) {
   for (const auto& one : side_by_side) cost += one.part->cost;
   Progress progress("parts", parts.size(), cost, run.quiet);
   progress.cells_resumed(finished);
-  const auto run_one = [&](const Open& one, unsigned threads) {
+  const auto run_one = [&](const Open& one, unsigned threads, bool tells_steps) {
     progress.replica_started();
-    one.part->record = one.part->run({threads, one.checkpoint()});
+    one.part->record = one.part->run({threads, one.checkpoint(), tells_steps});
     progress.replica_finished(one.part->cost);
     const bool failed = one.part->record.is_null();
     if (!failed) {
@@ -81,8 +81,9 @@ void run_kept_parts(std::vector<KeptPart>& parts, const KeptRun& run) {
                                                  [](const Open& one) { return !one.part->alone; });
   const std::vector<Open> alone(first_alone, side_by_side.end());
   side_by_side.erase(first_alone, side_by_side.end());
-  parallel(side_by_side.size(), run.threads, [&](std::size_t n) { run_one(side_by_side[n], 1); });
-  for (const auto& one : alone) run_one(one, run.threads);
+  parallel(side_by_side.size(), run.threads,
+           [&](std::size_t n) { run_one(side_by_side[n], 1, false); });
+  for (const auto& one : alone) run_one(one, run.threads, !run.quiet);
 }
 
 }  // namespace driftless

@@ -12,8 +12,9 @@ namespace driftless {
 
 /// What a part may use while it runs.
 struct PartPlace {
-  unsigned threads;                  ///< all for a part that runs alone, else 1
+  unsigned threads = 1;              ///< all for a part that runs alone, else 1
   std::filesystem::path checkpoint;  ///< a file of its own, removed once the part is finished
+  bool tells_steps = false;          ///< it runs alone and may tell on standard error how far it is
 };
 
 /// A share of a run: a pure function of its identity, whatever the threads.

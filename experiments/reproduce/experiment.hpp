@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "experiments/judge/conclusion.hpp"
+#include "experiments/kept_parts.hpp"
 #include "experiments/statistics.hpp"
 
 /// The systems, measurements and figures of the papers, each with the paper's values beside ours.
@@ -28,11 +28,7 @@ struct Conditions {
   std::uint64_t seed = 1;
 };
 
-/// What a part may use while it runs.
-struct Workplace {
-  unsigned threads = 1;              ///< for one system; 1 unless the part is `wide`
-  std::filesystem::path checkpoint;  ///< a file of its own for what a long run must not lose
-};
+using Workplace = PartPlace;
 
 /// A share of an experiment, computed by itself: a pure function of the conditions, whatever the
 /// threads, so that a part that was finished need not be run again.

@@ -160,8 +160,10 @@ void run_box(System& system, const MethodChoice& method, double time_step, doubl
              const std::vector<Observation>& observations, const Workplace& workplace,
              const json& identity) {
   const auto integrator = find_method(method.name)->make(method.options);
+  StepProgress progress(time_step, !workplace.tells_steps);
   LongRunPlan plan;
   plan.identity = identity;
+  plan.progress = &progress;
   plan.time_step = time_step;
   plan.last = static_cast<std::uint64_t>(std::llround(duration / time_step));
   long_run(system, *integrator, plan, observations, workplace.checkpoint, workplace.threads);

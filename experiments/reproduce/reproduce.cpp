@@ -61,7 +61,7 @@ KeptPart Reproduction::kept(Trial& trial, Part part) {
   const auto run = [this, &trial, name = part.name,
                     work = std::move(part.run)](const PartPlace& place) -> json {
     try {
-      return work({place.threads, place.checkpoint});
+      return work(place);
     } catch (const std::exception& failure) {
       const std::lock_guard lock(failing_);
       trial.failures[name] = failure.what();
