@@ -64,6 +64,9 @@ struct Method {
   /// In an isothermal fluid Maxwell's law of an isolated pair is left as it is by every step for
   /// which zeta dt < 2 mu, with any options.
   bool isothermal_pair_law_exact = false;
+  /// Whether with these options it runs fluids whose repulsion follows the temperatures: it takes
+  /// conservative forces by System::kick and System::move alone; null: with none.
+  bool (*runs_thermal_repulsion)(const Options&) = nullptr;
   /// Whether options leave it consistent in a fluid, where that depends on them; null: they do.
   bool (*stays_consistent)(const Options&, const Fluid&) = nullptr;
   std::vector<FrictionClosure> closures = {};
@@ -92,8 +95,12 @@ class Registration {
   Registration(const Method& method, std::size_t method_size, std::size_t system_size) noexcept;
 };
 
-/// Why the method cannot run the fluid, in one sentence; nothing if it can.
-std::optional<std::string> refusal(const Method& method, const Fluid& fluid);
+/// Of methods for which that does not depend on options.
+inline bool with_any_options(const Options& /*options*/) { return true; }
+
+/// Why the method with these options cannot run the fluid, in one sentence; nothing if it can.
+std::optional<std::string> refusal(const Method& method, const Fluid& fluid,
+                                   const Options& options = {});
 
 /// Whether the limit of a method with these options in this fluid is the model.
 bool is_consistent(const Method& method, const Options& options, const Fluid& fluid);

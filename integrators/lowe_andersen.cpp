@@ -56,6 +56,7 @@ const Method lowe_andersen = {
     .pair_law_exact = true,
     .isothermal = true,
     .isothermal_pair_law_exact = true,
+    .runs_thermal_repulsion = with_any_options,
     .closures = {FrictionClosure::noise, FrictionClosure::friction},
     .options = {{"rate", 1.0, "of jumps, in units of zeta/mu, above 0"},
                 {"resampling", std::string("exact"), "of velocities: \"exact\" or \"maxwell\""}},

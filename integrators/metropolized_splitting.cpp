@@ -52,6 +52,7 @@ const Method metropolized_splitting = {
     .energy_ideal = EnergyClaim::exact,
     .order_independent = false,
     .pair_law_exact = true,
+    .runs_thermal_repulsion = with_any_options,
     .closures = {FrictionClosure::noise, FrictionClosure::friction},
     .options = {{"conduction_proposal", std::string("euler"),
                  "proposal of conduction: \"euler\" or \"exponential\""},

@@ -49,6 +49,7 @@ const Method peters = {
     .order_independent = false,
     .isothermal = true,
     .isothermal_pair_law_exact = true,
+    .runs_thermal_repulsion = with_any_options,
     .closures = {FrictionClosure::noise, FrictionClosure::friction},
     .options = {{"scheme", std::string("I"), "of Peters 2004: \"I\" or \"II\""}},
     .make = [](const Options& options) -> std::unique_ptr<Integrator> {

@@ -18,6 +18,7 @@ struct Equations {
   bool frozen;
   Eigen::Index particles;
   const std::vector<std::uint8_t>& species;
+  mutable std::vector<double> factors = {};
 
   std::size_t species_of(Eigen::Index i) const {
     return species.empty() ? 0 : species[static_cast<std::size_t>(i)];
@@ -26,10 +27,43 @@ struct Equations {
   void rates(const Unknowns& y, UnknownRates& dy) const {
     const Eigen::Index n = particles;
     dy.setZero();
+    if (fluid.repulsion_follows_temperatures()) find_factors(y);
     if (!frozen) dy.head(3 * n) = y.segment(3 * n, 3 * n);
     for (Eigen::Index i = 0; i < n; ++i) {
       for (Eigen::Index j = i + 1; j < n; ++j) add_pair(y, i, j, dy);
     }
+  }
+
+  /// chi of every particle.
+  void find_factors(const Unknowns& y) const {
+    factors.assign(static_cast<std::size_t>(particles), 1.0);
+    for (Eigen::Index i = 0; i < particles; ++i) {
+      for (Eigen::Index j = i + 1; j < particles; ++j) {
+        const double r = box.minimum_image(y.segment<3>(3 * i) - y.segment<3>(3 * j)).norm();
+        if (r >= fluid.range()) continue;
+        const double half = 0.5 * fluid.law(species_of(i), species_of(j)).thermal_shape(r);
+        factors[static_cast<std::size_t>(i)] += half * slope(i);
+        factors[static_cast<std::size_t>(j)] += half * slope(j);
+      }
+    }
+  }
+  /// dchi/dW = a_1/(phi T).
+  double slope(Eigen::Index i) const {
+    const auto& f = fluid.parameters();
+    const auto& state = fluid.equation_of_state(species_of(i));
+    return f.thermal_repulsion * state.inverse_heat_capacity(1.0) / f.temperature;
+  }
+  /// The force of a pair that follows the temperatures, and the energies that pay for it: u beta_i
+  /// dW/dt of each, where u beta = a_1 theta/T and u = eps/chi.
+  double add_thermal(const Pair<double>& pair, Eigen::Index i, Eigen::Index j,
+                     UnknownRates& dy) const {
+    const double shape = pair.law->thermal_shape_force(pair.r);
+    auto u_dot = dy.tail(particles);
+    const double of_i = 0.5 * shape * slope(i) * pair.u_i / factors[static_cast<std::size_t>(i)];
+    const double of_j = 0.5 * shape * slope(j) * pair.u_j / factors[static_cast<std::size_t>(j)];
+    u_dot[i] -= of_i * pair.v;
+    u_dot[j] -= of_j * pair.v;
+    return of_i + of_j;
   }
 
   void add_pair(const Unknowns& y, Eigen::Index i, Eigen::Index j, UnknownRates& dy) const {
@@ -47,6 +81,7 @@ struct Equations {
     const Pair<double> pair{
         r, law.friction_weight(r), law.heat_weight(r), v, u_i, u_j, 0, 0, 1, 1, &law};
     double force = law.repulsive_force(r);
+    if (fluid.repulsion_follows_temperatures() && !frozen) force += add_thermal(pair, i, j, dy);
     if (fluid.has_friction()) {
       const double drag = fluid.friction(pair).friction * v;
       force -= drag;

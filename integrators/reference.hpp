@@ -23,6 +23,8 @@ enum class ReferenceSolver { adams, runge_kutta };
 /// The state after `duration` in the deterministic limit of the model, k = 0, where noise and what
 /// it induces vanish together:
 ///   dr/dt = p/m,  dp/dt = F^C - zeta v e,  du/dt = 1/2 zeta v^2 + lambda (theta_j - theta_i).
+/// and du/dt += u d(ln chi)/dt, F^C at the present energies, where the repulsion follows the
+/// temperatures (FluidParameters::thermal_repulsion).
 /// Total energy and momentum are conserved by the equations. Every method that claims to be
 /// consistent converges to this as its step shrinks.
 ///

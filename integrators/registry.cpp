@@ -76,11 +76,18 @@ std::size_t detail::registered_methods() { return registry().all.size(); }
 
 std::string detail::take_complaint() { return std::exchange(registry().complaint, {}); }
 
-std::optional<std::string> refusal(const Method& method, const Fluid& fluid) {
+std::optional<std::string> refusal(const Method& method, const Fluid& fluid,
+                                   const Options& options) {
   if (fluid.isothermal()) {
     if (method.isothermal) return std::nullopt;
     return std::string(method.name) +
            " is built for particles with internal energies, this scene is isothermal and has none";
+  }
+  const auto takes = method.runs_thermal_repulsion;
+  if (fluid.repulsion_follows_temperatures() && (takes == nullptr || !takes(options))) {
+    return std::string(method.name) + (takes == nullptr ? "" : " with these options") +
+           " is built for a repulsion that depends on distances alone, that of this scene follows "
+           "the temperatures";
   }
   const auto closure = fluid.parameters().friction_closure;
   const auto& built_for = method.closures;

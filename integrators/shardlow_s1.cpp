@@ -36,6 +36,7 @@ const Method shardlow_s1 = {
     .order_independent = false,
     .isothermal = true,
     .isothermal_pair_law_exact = true,
+    .runs_thermal_repulsion = with_any_options,
     .stays_consistent =
         [](const Options& options, const Fluid& fluid) {
           return shardlow_is_consistent(fluid, option<bool>(shardlow_s1, options, "as_published"));

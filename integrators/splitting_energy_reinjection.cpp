@@ -44,6 +44,10 @@ const Method splitting_energy_reinjection = {
     .reference = "Homman, Maillet, Roussel, Stoltz, J. Chem. Phys. 144, 024112 (2016)",
     .conserves = "momentum; energy to rounding without a potential",
     .energy_ideal = EnergyClaim::exact,
+    .runs_thermal_repulsion =
+        [](const Options& options) {
+          return !option<bool>(splitting_energy_reinjection, options, "reinject_potential");
+        },
     .closures = {FrictionClosure::noise, FrictionClosure::friction},
     .options = {{"reinject_potential", false, "put the Verlet part's energy error back, too"}},
     .make = [](const Options& options) -> std::unique_ptr<Integrator> {

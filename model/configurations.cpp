@@ -28,6 +28,12 @@ Fluid conservative_part(const Fluid& fluid) {
   return Fluid(parameters);
 }
 
+/// phi/k + 1 of a particle: what an internal energy is in the mean under a bath, over k T.
+double mean_energy_over_thermal(const System& system, std::size_t place) {
+  const double capacity = 1 / system.equation_of_state(place).inverse_heat_capacity(1.0);
+  return capacity / system.fluid().boltzmann() + 1;
+}
+
 /// Potential and Laplacian of walls and field; to the virial, a sum over pairs, they do not belong.
 void add_boundaries(System& system, ConfigurationSums& sums) {
   sums.potential = system.potential_energy();
@@ -51,6 +57,26 @@ ConfigurationChain::ConfigurationChain(const Fluid& fluid, const Box& box, State
     : system_(conservative_part(fluid), box, without_energies(std::move(state)), noise),
       noise_(noise) {}
 
+double ConfigurationChain::log_of_factors() {
+  double sum = 0;
+  const auto& factors = system_.energy_factors();
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    sum -= mean_energy_over_thermal(system_, i) * std::log(factors[i]);
+  }
+  return sum;
+}
+
+void ConfigurationChain::kick(double duration) {
+  const auto& f = system_.fluid().parameters();
+  if (system_.fluid().repulsion_follows_temperatures()) {
+    // With these the force is the gradient of k T times the logarithm of the canonical weight.
+    system_.update([&](std::size_t i, Vector&, double& energy) {
+      energy = mean_energy_over_thermal(system_, i) * f.boltzmann * f.temperature;
+    });
+  }
+  system_.kick(duration);
+}
+
 template <class LogWeight>
 void ConfigurationChain::advance(LogWeight&& log_weight) {
   const auto& f = system_.fluid().parameters();
@@ -64,7 +90,7 @@ void ConfigurationChain::advance(LogWeight&& log_weight) {
   });
   const State before = system_.state();
   const auto log_probability = [&] {
-    return log_weight(system_.potential_energy()) -
+    return log_weight(system_.potential_energy()) + log_of_factors() -
            system_.kinetic_energy() / (f.boltzmann * f.temperature);
   };
   const double start = log_probability();
@@ -73,9 +99,9 @@ void ConfigurationChain::advance(LogWeight&& log_weight) {
       static_cast<int>(std::ceil(path_length * fourth_root / stride_of_one_particle));
   const double stride = path_length / strides * f.repulsion_range / thermal;
   for (int n = 0; n < strides; ++n) {
-    system_.kick(stride / 2);
+    kick(stride / 2);
     system_.move(stride);
-    system_.kick(stride / 2);
+    kick(stride / 2);
   }
   auto stream = noise_.particle_stream(0, Purpose::monte_carlo);
   const double gain = log_probability() - start;
@@ -107,10 +133,13 @@ ConfigurationSums configuration_sums(System& system) {
   ConfigurationSums sums;
   const Fluid& fluid = system.fluid();
   if (!fluid.has_repulsion()) return sums;
+  const auto& thermal = system.thermal_repulsion();
   system.for_each_pair([&](const System::Geometry& pair) {
+    const double strength = thermal.empty() ? 0 : thermal[pair.i] + thermal[pair.j];
     sums.potential += pair.law->potential(pair.r);
     sums.virial += pair.r * pair.law->repulsive_force(pair.r);
-    sums.laplacian += 2 * pair.law->potential_laplacian(pair.r);
+    if (strength != 0) sums.virial += pair.r * strength * pair.law->thermal_shape_force(pair.r);
+    sums.laplacian += 2 * pair.law->potential_laplacian(pair.r, strength);
   });
   if (system.box().is_bounded()) add_boundaries(system, sums);
   for (const auto& force : system.conservative_force()) sums.squared_force += force.squaredNorm();

@@ -75,6 +75,9 @@ Fluid::Fluid(const FluidParameters& parameters) : parameters_(with_bath(paramete
   require(f.temperature > 0, "temperature", f.temperature, "> 0");
   require(f.heat_capacity > 0, "heat_capacity", f.heat_capacity, "> 0");
   require(f.repulsion >= 0, "repulsion", f.repulsion, ">= 0");
+  require(f.thermal_repulsion >= 0, "thermal_repulsion", f.thermal_repulsion, ">= 0");
+  require(!f.isothermal || f.thermal_repulsion == 0, "thermal_repulsion", f.thermal_repulsion,
+          "0 in an isothermal fluid, whose particles have no temperatures");
   require(f.repulsion_range > 0, "repulsion_range", f.repulsion_range, "> 0");
   require(f.friction >= 0, "friction", f.friction, ">= 0");
   require(f.friction_range > 0, "friction_range", f.friction_range, "> 0");
@@ -90,6 +93,8 @@ Fluid::Fluid(const FluidParameters& parameters) : parameters_(with_bath(paramete
     require(species.heat_capacity > 0, "heat_capacity of a species", species.heat_capacity, "> 0");
     add_partner(species);
   }
+  require(f.thermal_repulsion == 0 || has_constant_heat_capacities(), "thermal_repulsion",
+          f.thermal_repulsion, "0 where a heat capacity follows the temperature");
   require(partners_.size() <= 256, "number of species", static_cast<double>(partners_.size()),
           "at most 256");
   check_pairs(f);
@@ -124,8 +129,8 @@ bool Fluid::has_constant_heat_capacities() const {
 
 PairCoefficients Fluid::coefficients(std::size_t species_i, std::size_t species_j) const {
   const auto& f = parameters_;
-  PairCoefficients found{f.repulsion,      f.repulsion_range, f.friction,
-                         f.friction_range, f.conduction,      f.heat_range};
+  PairCoefficients found{f.repulsion,  f.repulsion_range, f.friction,         f.friction_range,
+                         f.conduction, f.heat_range,      f.thermal_repulsion};
   for (const auto& pair : f.pairs) {
     const bool meant = (pair.a == species_i && pair.b == species_j) ||
                        (pair.a == species_j && pair.b == species_i);

@@ -26,6 +26,9 @@ class Fluid {
   bool isothermal() const { return parameters_.isothermal; }
   /// What kernels see in the place of an internal energy in an isothermal fluid.
   double bath_energy() const { return internal_energy(parameters_.temperature); }
+  /// Whether the repulsion depends on the temperatures (FluidParameters::thermal_repulsion). The
+  /// functions of a distance or a pair below do not know of that part: System adds it.
+  bool repulsion_follows_temperatures() const { return parameters_.thermal_repulsion != 0; }
   bool fluctuates() const { return parameters_.boltzmann > 0; }
   double boltzmann() const { return parameters_.boltzmann; }
   /// Whether the friction's noise of any pair, or the noise of anything, follows the internal

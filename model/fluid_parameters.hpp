@@ -46,6 +46,15 @@ struct FluidParameters {
   /// if there is none.
   std::vector<StatePoint> equation_of_state = {};
   double repulsion = 0;  ///< a of psi = (a r_c/2)(1 - r/r_c)^2 (Groot and Warren 1997)
+  /// a_1 >= 0 of a repulsion that follows the temperatures of the pair [Soleymani, Ripoll, Gompper,
+  /// Fedosov, J. Chem. Phys. 152, 064112 (2020)]: a + a_1 (theta_i + theta_j)/(2 T) takes the place
+  /// of a between all particles, walls have none of it. Heat capacities have to be constant. theta
+  /// is u/phi of the energy u that the entropy phi ln u is of; the internal energies of a State are
+  /// eps = chi u then, chi = 1 + a_1 W/(phi T), W half the sum over the particle's pairs of
+  /// (r_c/2)(1 - r/r_c)^2. With these the energy is that of a alone, and the temperature that
+  /// friction, conduction and all observables know is eps/phi (results/
+  /// temperature_dependent_repulsion.md derives it).
+  double thermal_repulsion = 0;
   double repulsion_range = 1;
   double friction = 0;  ///< zeta_0 at temperature T, for either closure
   FrictionClosure friction_closure = FrictionClosure::noise;
@@ -70,7 +79,7 @@ struct FluidParameters {
   /// where none are given the fluid's hold.
   std::vector<PairParameters> pairs = {};
 
-  bool has_repulsion() const { return repulsion != 0; }
+  bool has_repulsion() const { return repulsion != 0 || thermal_repulsion != 0; }
   bool has_friction() const { return friction != 0; }
   bool has_conduction() const { return heat_form != HeatForm::none && conduction != 0; }
   bool operator==(const FluidParameters&) const = default;

@@ -55,9 +55,13 @@ double PairLaw::potential_curvature(double distance) const {
   return uniform_ || distance >= range ? 0 : coefficients_.repulsion / range;
 }
 
-double PairLaw::potential_laplacian(double distance) const {
-  if (distance >= coefficients_.repulsion_range) return 0;
-  return potential_curvature(distance) - 2 * repulsive_force(distance) / distance;
+double PairLaw::potential_laplacian(double distance, double thermal) const {
+  const double range = coefficients_.repulsion_range;
+  if (distance >= range) return 0;
+  const double of_distance =
+      potential_curvature(distance) - 2 * repulsive_force(distance) / distance;
+  if (thermal == 0) return of_distance;
+  return of_distance + thermal * (1 / range - 2 * thermal_shape_force(distance) / distance);
 }
 
 }  // namespace driftless

@@ -21,6 +21,7 @@ struct PairCoefficients {
   double repulsion = 0, repulsion_range = 1;
   double friction = 0, friction_range = 1;
   double conduction = 0, heat_range = 1;
+  double thermal_repulsion = 0;
 };
 
 /// The constitutive laws of one kind of pair - two species, or a species and a wall -: what such a
@@ -34,7 +35,9 @@ class PairLaw {
   /// r is the coordinate.
   static PairLaw uniform_field(const FluidParameters& fluid, double force, const Partner& i);
 
-  bool has_repulsion() const { return uniform_ || coefficients_.repulsion != 0; }
+  bool has_repulsion() const {
+    return uniform_ || coefficients_.repulsion != 0 || coefficients_.thermal_repulsion != 0;
+  }
   bool has_friction() const { return coefficients_.friction != 0; }
   bool has_conduction() const {
     return heat_form_ != HeatForm::none && coefficients_.conduction != 0;
@@ -80,7 +83,8 @@ class PairLaw {
     return weight(distance, coefficients_.heat_range);
   }
 
-  /// Repulsive force on i along e at distance r: a (1 - r/r_c) inside the range.
+  /// Repulsive force on i along e at distance r: a (1 - r/r_c) inside the range. What of it follows
+  /// the temperatures is not in it, nor in the potential: see thermal_shape().
   template <class V>
   V repulsive_force(V distance) const {
     if (uniform_) return V(coefficients_.repulsion);
@@ -93,8 +97,19 @@ class PairLaw {
     const V x = depth(distance, coefficients_.repulsion_range);
     return 0.5 * coefficients_.repulsion * coefficients_.repulsion_range * x * x;
   }
-  /// psi''(r) + 2 psi'(r)/r, the Laplacian of psi with respect to one particle's position.
-  double potential_laplacian(double distance) const;
+  /// Potential (r_c/2)(1 - r/r_c)^2 and force 1 - r/r_c of a repulsion of strength 1.
+  template <class V>
+  V thermal_shape(V distance) const {
+    const V x = depth(distance, coefficients_.repulsion_range);
+    return 0.5 * coefficients_.repulsion_range * x * x;
+  }
+  template <class V>
+  V thermal_shape_force(V distance) const {
+    return depth(distance, coefficients_.repulsion_range);
+  }
+  /// psi''(r) + 2 psi'(r)/r, the Laplacian of psi with respect to one particle's position; with
+  /// `thermal` the strength of what follows the temperatures.
+  double potential_laplacian(double distance, double thermal = 0) const;
   /// psi''(r).
   double potential_curvature(double distance) const;
 

@@ -365,6 +365,7 @@ void System::sweep(const PairKernel& kernel, const Sweep& how) {
   if (how.order == SweepOrder::forward) sweep_contacts(particles, kernel, how, failed);
   const auto& place = cells_.place();
   std::atomic<bool> sound = true;
+  ++energies_version_;
   for_each_particle([&](std::size_t begin, std::size_t end) {
     bool all = true;
     for (std::size_t n = begin; n < end; ++n) {
@@ -439,6 +440,7 @@ void System::set_motion(const Motion& motion) {
   state_.internal_energy = motion.internal_energy;
   state_.surroundings = motion.surroundings;
   drop_if_isothermal(state_.internal_energy);
+  ++energies_version_;
   check();
 }
 
@@ -496,6 +498,7 @@ Vector System::reflect(Vector position, std::size_t place, Surroundings& receive
 
 void System::move_along(const std::vector<Vector>& velocity, double duration) {
   if (frozen_) return;
+  const auto factors = energy_factors();
   const bool walled = box_.is_walled(0) || box_.is_walled(1) || box_.is_walled(2);
   // Shares that do not depend on the threads: sums then do not either.
   constexpr std::size_t shares = 8;
@@ -521,7 +524,10 @@ void System::move_along(const std::vector<Vector>& velocity, double duration) {
   }
   ++positions_version_;
   if (!sound) throw_failure();
-  if (inside) return;
+  if (inside) {
+    follow_factors(factors);
+    return;
+  }
   // So far beyond the box that rounding leaves no image inside, or through two walls at once.
   std::vector<std::uint32_t> lost;
   for (std::size_t i = 0; i < size(); ++i) {
@@ -560,6 +566,10 @@ void System::renew_conservative() {
 }
 
 const std::vector<Vector>& System::conservative_force() {
+  if (fluid_.repulsion_follows_temperatures()) {
+    renew_thermal_force();
+    return total_force_;
+  }
   renew_conservative();
   return force_;
 }

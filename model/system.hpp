@@ -99,19 +99,28 @@ class System {
   template <class Change>
   void update(Change&& change);
 
-  /// Momenta += conservative force x duration, the forces of the present positions.
+  /// Momenta += conservative force x duration, the forces of the present positions (and energies).
   void kick(double duration);
-  /// Positions += velocity x duration, reflected where walls stand; frozen particles stay.
+  /// Positions += velocity x duration, reflected where walls stand; frozen particles stay. Where
+  /// the repulsion follows the temperatures internal energies follow, eps' = eps chi(r')/chi(r): it
+  /// is u that motion without friction leaves alone.
   void move(double duration) { move_along(state_.velocity, duration); }
   /// The same along other velocities than the present ones, which walls turn round all the same:
   /// for a method that moves with the velocities of a step's start when it has those of its end.
   void move_along(const std::vector<Vector>& velocity, double duration);
 
-  /// Conservative force on each particle; computed once per set of positions.
+  /// Conservative force on each particle; computed once per set of positions, and of internal
+  /// energies where the repulsion follows the temperatures.
   const std::vector<Vector>& conservative_force();
   /// Each particle's half of its pairs' potential energies, and all of those at walls and in a
   /// field; computed once per set of positions.
   const std::vector<double>& potential_shares();
+
+  /// Each particle's share a_1 theta/(2 T) in the strength of its pairs' repulsion, theta =
+  /// eps/(phi chi), and its chi (FluidParameters::thermal_repulsion). Empty if no repulsion follows
+  /// the temperatures.
+  const std::vector<double>& thermal_repulsion();
+  const std::vector<double>& energy_factors();
 
   double kinetic_energy() const;
   double internal_energy() const;
@@ -176,6 +185,11 @@ class System {
   void gather_motion(const Motion& motion, std::vector<Quadruple>& gathered) const;
   void count_visit(bool noise, bool uniforms);
   void renew_conservative();
+  /// The factors chi of the present positions, and the force with what follows the temperatures.
+  void renew_factors();
+  void renew_thermal_force();
+  /// Internal energies at the present positions from those that went with these factors.
+  void follow_factors(const std::vector<double>& before);
   void for_each_particle(FunctionReference<void(std::size_t, std::size_t)> body) const {
     threads_.ranges(size(), body);
   }
@@ -213,11 +227,18 @@ class System {
   std::vector<Vector> force_;
   Surroundings surroundings_force_ = {};
   std::vector<double> potential_share_;
+  // Where the repulsion follows the temperatures.
+  std::uint64_t energies_version_ = 1;
+  std::uint64_t factors_version_ = 0;
+  std::uint64_t thermal_positions_version_ = 0, thermal_energies_version_ = 0;
+  std::vector<double> energy_factor_, thermal_repulsion_, scratch_energy_;
+  std::vector<Vector> total_force_;
 };
 
 template <class Change>
 void System::update(Change&& change) {
   std::atomic<bool> sound = true;
+  ++energies_version_;
   for_each_particle([&](std::size_t begin, std::size_t end) {
     bool all = true;
     for (std::size_t i = begin; i < end; ++i) {

@@ -136,7 +136,8 @@ NaiveFluid::NaiveFluid(const FluidParameters& fluid, const Box& box, const State
   if (fluid.friction_closure != FrictionClosure::noise ||
       fluid.heat_form != HeatForm::inverse_temperature || fluid.repulsion_range != range ||
       fluid.heat_range != range || !Fluid(fluid).has_constant_heat_capacities() ||
-      Fluid(fluid).noise_follows_energies() || box.lengths.minCoeff() < 3 * range) {
+      Fluid(fluid).noise_follows_energies() || fluid.thermal_repulsion != 0 ||
+      box.lengths.minCoeff() < 3 * range) {
     throw std::invalid_argument("the naive reference knows the soft fluid alone");
   }
   for (std::size_t i = 0; i < particles_.size(); ++i) {

@@ -76,6 +76,23 @@ double gain_outside(System& system, int axis, const Slab& region, const Kernel& 
   return gain;
 }
 
+/// Of the part of the repulsion that follows the temperatures each particle pays its own share.
+double work_of_thermal_repulsion(System& system, int axis, const Slab& region) {
+  const auto& strength = system.thermal_repulsion();
+  if (strength.empty()) return 0;
+  const State& state = system.state();
+  double gain = 0;
+  const auto outside = [&](std::size_t i) { return !region.contains(state.position[i][axis]); };
+  system.for_each_pair([&](const System::Geometry& pair) {
+    const double shape = pair.law->thermal_shape_force(pair.r);
+    const double v_i = pair.e.dot(state.velocity[pair.i]), v_j = pair.e.dot(state.velocity[pair.j]);
+    const double of_i = strength[pair.i] * shape, of_j = strength[pair.j] * shape;
+    if (outside(pair.i)) gain += (of_i + of_j) * v_i - of_i * (v_i - v_j);
+    if (outside(pair.j)) gain -= (of_i + of_j) * v_j + of_j * (v_i - v_j);
+  });
+  return gain;
+}
+
 }  // namespace
 
 PairRates pair_rates(System& system, int axis, const Slab& region) {
@@ -102,6 +119,7 @@ PairRates pair_rates(System& system, int axis, const Slab& region) {
     rates.work_of_repulsion = gain_outside(system, axis, region, [&](const auto& pair) {
       return work_of(fluid.repulsive_force(pair), pair);
     });
+    rates.work_of_repulsion += work_of_thermal_repulsion(system, axis, region);
   }
   return rates;
 }

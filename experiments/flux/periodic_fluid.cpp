@@ -27,6 +27,7 @@ System equilibrium_start(const PeriodicFluid& setting, std::uint64_t replica) {
   if (potential) {
     auto at_start = setting.fluid;
     at_start.temperature = setting.temperature;
+    at_start.thermal_repulsion *= setting.temperature / setting.fluid.temperature;
     ConfigurationChain chain(Fluid(at_start), setting.box(), state, noise);
     for (int path = 0; path < settling_paths; ++path) chain.relax();
     for (int path = 0; path < settling_paths; ++path) chain.advance_canonical();
