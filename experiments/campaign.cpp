@@ -102,7 +102,7 @@ std::string Campaign::cell_key(const Scene& scene, const MethodChoice& choice,
 void Campaign::list_cells() {
   for (const auto& prepared : prepared_) {
     for (const auto& choice : study_.methods) {
-      const auto refused = refusal(*find_method(choice.name), prepared->fluid());
+      const auto refused = refusal(*find_method(choice.name), prepared->fluid(), choice.options);
       for (const double time_step : study_.time_steps) {
         const auto file = cell_key(prepared->scene(), choice, time_step) + ".json";
         auto cell = std::make_unique<Cell>(*prepared, choice, time_step,

@@ -172,18 +172,28 @@ void PreparedScene::prepare_with_repulsion() {
 
   // A number of replicas beyond any study's keys the chain apart from the runs.
   ConfigurationChain chain(fluid_, box_, pilot.system().state(), {seed_, ~std::uint64_t{0}});
-  Eigen::MatrixXd samples(chain_paths, 5);
+  Eigen::MatrixXd samples(chain_paths, 6);
   const int apart = std::max(1, chain_paths / static_cast<int>(std::max(1U, replicas_)));
   for (int path = -burn_in; path < chain_paths; ++path) {
     chain.advance_microcanonical(energy, law.total_shape());
     if (path < 0) continue;
+    if (fluid_.repulsion_follows_temperatures()) draw_energies(energy, path, chain.system());
     const auto sums = configuration_sums(chain.system());
     samples.row(path) << sums.potential, sums.virial, sums.squared_force, sums.laplacian,
-        energy - sums.potential;
+        energy - sums.potential, chain.system().kinetic_energy();
     if (path % apart == 0) configurations_.push_back(chain.system().state());
   }
   while (configurations_.size() < replicas_) configurations_.push_back(chain.system().state());
   if (law_ && law_->degrees > 0) reference_from_chain(samples);
+}
+
+/// The forces of a repulsion that follows the temperatures need the energies at these positions.
+void PreparedScene::draw_energies(double energy, int path, System& system) const {
+  Noise numbers(seed_, ~std::uint64_t{1});  // a replica beyond any study's, and the chain's
+  numbers.set_step(static_cast<std::uint64_t>(path));
+  State state = system.state();
+  draw_microcanonical(fluid_, scene_.layout, energy - system.potential_energy(), numbers, state);
+  system.set_motion(state);
 }
 
 /// Whatever the start, the bath leads to its own temperature, exactly.
@@ -258,11 +268,14 @@ void PreparedScene::reference_from_chain(const Eigen::MatrixXd& samples) {
   set("kinetic_temperature", column(4) / (k * total), mean);
   set("internal_temperature", column(4).cwiseInverse() * (k * (total - 1)),
       [](const Eigen::VectorXd& m) { return 1 / m[0]; });
-  // In this ensemble <lap Psi> = (A - 1) <|grad Psi|^2/(E - Psi)> exactly, which fluctuates less.
+  // In this ensemble <lap Psi> = (A - 1) <|grad Psi|^2/(E - Psi)> exactly, which fluctuates less;
+  // with energies that Psi depends on, (d/2 - 1) <|grad Psi|^2/K>.
+  const bool thermal = fluid_.repulsion_follows_temperatures();
+  const double exponent = thermal ? 0.5 * law.degrees - 1 : total - 1;
   Eigen::MatrixXd forces(samples.rows(), 2);
-  forces << column(2), column(2).cwiseQuotient(column(4));
+  forces << column(2), column(2).cwiseQuotient(column(thermal ? 5 : 4));
   set("configurational_temperature", forces,
-      [&](const Eigen::VectorXd& m) { return m[0] / (k * (total - 1) * m[1]); });
+      [&](const Eigen::VectorXd& m) { return m[0] / (k * exponent * m[1]); });
   set("pressure", column(4) * (n / (total * box_.volume())) + column(1) / (3 * box_.volume()),
       mean);
   set("internal_energy_mean", column(4) * ((a + law.excess_shape / n) / total), mean);

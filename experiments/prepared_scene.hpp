@@ -88,6 +88,7 @@ class PreparedScene {
   /// The law of all particles as if friction and conduction acted.
   MicrocanonicalLaw full_law() const;
   State on_lattice(const Noise& numbers) const;
+  void draw_energies(double energy, int path, System& system) const;
   void reference_from_chain(const Eigen::MatrixXd& samples);
   Noise noise(unsigned replica) const { return {seed_, replica}; }
 

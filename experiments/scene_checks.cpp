@@ -167,10 +167,28 @@ void check_equation_of_state(const FluidParameters& fluid, const Location& locat
                           describe(fluid.heat_capacity_slope / unit), describe(limit / unit)));
 }
 
+void check_thermal_repulsion(const Scene& scene, const Location& location) {
+  const FluidParameters& fluid = scene.fluid;
+  if (fluid.thermal_repulsion == 0) return;
+  const Location place = location.member("thermal_repulsion");
+  const std::string value = describe(fluid.thermal_repulsion);
+  if (fluid.heat_capacity_slope != 0 || !fluid.equation_of_state.empty()) {
+    place.refuse("is " + value +
+                 ", which is built for constant heat capacities; allowed is 0 with " +
+                 (fluid.equation_of_state.empty() ? "heat_capacity_slope" : "equation_of_state"));
+  }
+  if (scene.frozen) {
+    place.refuse("is " + value +
+                 ", but a force on frozen particles works without end; allowed is 0 where frozen "
+                 "is true");
+  }
+}
+
 }  // namespace
 
 void check_scene(const Scene& scene, const Location& location) try {
   check_equation_of_state(scene.fluid, location);
+  check_thermal_repulsion(scene, location);
   const Fluid fluid(scene.fluid);
   if (scene.frozen && fluid.has_repulsion()) {
     location.member("repulsion")

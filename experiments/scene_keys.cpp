@@ -442,6 +442,7 @@ const std::vector<std::string_view>& rare_keys() {
                                                      "heat_slabs",
                                                      "species",
                                                      "species_pairs",
+                                                     "thermal_repulsion",
                                                      "heat_capacity_slope",
                                                      "equation_of_state",
                                                      "friction_temperature_exponent",
@@ -489,6 +490,11 @@ std::vector<SceneKey> keys_of_the_laws() {
   return {
       plain<&FluidParameters::repulsion>("repulsion", ValueRule::not_negative(),
                                          "largest repulsive force a between two particles"),
+      plain<&FluidParameters::thermal_repulsion>(
+          "thermal_repulsion", ValueRule::not_negative(),
+          "a_1 of what a repulsion that follows the temperatures has more: a_1 times the mean "
+          "temperature of the pair over temperature",
+          of_internal_energies),
       plain<&FluidParameters::repulsion_range>("repulsion_range", ValueRule::positive(),
                                                "distance at which the repulsion ends"),
       plain<&FluidParameters::friction>("friction", ValueRule::not_negative(),

@@ -50,7 +50,7 @@ MethodChoice read_simulated_method(const std::string& text, const Scene& scene) 
     argument("--method").refuse("is " + describe(json(text)) + "; allowed is one method");
   }
   const MethodChoice choice = candidates.front().choice;
-  if (const auto reason = refusal(*find_method(choice.name), Fluid(scene.fluid))) {
+  if (const auto reason = refusal(*find_method(choice.name), Fluid(scene.fluid), choice.options)) {
     argument("--method")
         .refuse("is " + describe(json(text)) + ", which cannot run this scene: " + *reason);
   }

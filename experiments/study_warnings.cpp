@@ -76,7 +76,7 @@ Refused refused_by(const Study& study, const Scene& scene) {
   Refused refused;
   const Fluid fluid(scene.fluid);
   for (const auto& choice : study.methods) {
-    const auto reason = refusal(*find_method(choice.name), fluid);
+    const auto reason = refusal(*find_method(choice.name), fluid, choice.options);
     if (!reason) {
       refused.all = false;
       continue;

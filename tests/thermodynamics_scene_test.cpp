@@ -105,5 +105,51 @@ TEST(ThermodynamicScene, StartsAtItsTemperatureWithoutALaw) {
   }
 }
 
+TEST(ThermodynamicScene, TakesARepulsionThatFollowsTheTemperatures) {
+  const auto with = [](json overrides) {
+    overrides["thermal_repulsion"] = 10;
+    return scene_of(overrides);
+  };
+  const Scene scene = read(with({{"repulsion", 15}}));
+  EXPECT_EQ(scene.fluid.repulsion, 15);
+  EXPECT_EQ(scene.fluid.thermal_repulsion, 10);
+  EXPECT_EQ(to_json(scene)["thermal_repulsion"], 10);
+  EXPECT_EQ(to_json(read(to_json(scene))), to_json(scene));
+  EXPECT_FALSE(to_json(read(scene_of(json::object()))).contains("thermal_repulsion"));
+  EXPECT_NE(refusal_of(scene_of({{"thermal_repulsion", -1}})).find(">= 0"), std::string::npos);
+  for (const json& bad : {json{{"heat_capacity_slope", 10}}, json{{"equation_of_state", points}}}) {
+    const std::string told = refusal_of(with(bad));
+    EXPECT_NE(told.find("thermal_repulsion: is 10, which is built for constant heat capacities; "
+                        "allowed is 0 with " +
+                        bad.begin().key()),
+              std::string::npos)
+        << told;
+  }
+  EXPECT_NE(
+      refusal_of(with({{"frozen", true}})).find("thermal_repulsion: is 10, but a force on frozen"),
+      std::string::npos);
+  EXPECT_NE(refusal_of({{"preset", "groot-warren-1997"}, {"thermal_repulsion", 1}})
+                .find("thermal_repulsion: is 1 but has no effect here"),
+            std::string::npos);
+}
+
+TEST(ThermodynamicScene, StartsAtItsEnergyWithARepulsionThatFollowsTheTemperatures) {
+  const PreparedScene prepared(
+      read(scene_of({{"repulsion", 5}, {"thermal_repulsion", 20}, {"heat_capacity", 12}})), 1, 4);
+  ASSERT_TRUE(prepared.law());
+  const double energy = 100 * prepared.energy_per_particle();
+  for (unsigned replica = 0; replica < 4; ++replica) {
+    EXPECT_NEAR(prepared.start(replica).total_energy(), energy, 1e-10 * energy);
+  }
+  const auto value = [&](const char* name) { return prepared.reference(name)->value; };
+  // The energy is that at which the temperature is 1; the errors are those of the references.
+  EXPECT_NEAR(value("kinetic_temperature"), 1, 0.01);
+  EXPECT_NEAR(value("internal_temperature"), 1, 0.01);
+  EXPECT_NEAR(value("configurational_temperature"), 1,
+              6 * prepared.reference("configurational_temperature")->error + 0.02);
+  EXPECT_LT(prepared.reference("configurational_temperature")->error, 0.03);
+  EXPECT_GT(value("pressure"), 5);
+}
+
 }  // namespace
 }  // namespace driftless::testing
