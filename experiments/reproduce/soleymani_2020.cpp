@@ -11,8 +11,11 @@ using nlohmann::json;
 std::string Combination::name() const {
   const std::string heat =
       heat_form == HeatForm::temperature ? "temperature" : "inverse-temperature";
-  return (repulsion == 0 ? "no repulsion" : fmt::format("repulsion a = {:g}", repulsion)) +
-         ", heat form " + heat;
+  const std::string strength = thermal_repulsion != 0
+                                   ? fmt::format("repulsion a = {:g} T", thermal_repulsion)
+                               : repulsion == 0 ? "no repulsion"
+                                                : fmt::format("repulsion a = {:g}", repulsion);
+  return strength + ", heat form " + heat;
 }
 
 const std::vector<Combination>& combinations() {
@@ -23,12 +26,24 @@ const std::vector<Combination>& combinations() {
   return all;
 }
 
+const std::vector<Combination>& all_combinations() {
+  static const std::vector<Combination> all = [] {
+    auto list = combinations();
+    for (const auto form : {HeatForm::inverse_temperature, HeatForm::temperature}) {
+      list.push_back({0, form, 25});
+    }
+    return list;
+  }();
+  return all;
+}
+
 FluidParameters fluid_of(const Combination& combination) {
   return {.boltzmann = 1,
           .mass = 1,
           .temperature = 1,
           .heat_capacity = 60,
           .repulsion = combination.repulsion,
+          .thermal_repulsion = combination.thermal_repulsion,
           .repulsion_range = 1,
           .friction = 4.5,
           .friction_closure = FrictionClosure::noise,
@@ -126,7 +141,7 @@ std::vector<std::string> common_remarks(const Conditions& conditions) {
       "The paper's parameters are not known to us. Chosen: m = k = r_c = 1, density 3, mean "
       "temperature 1, friction 4.5 at T = 1 with the noise closure, heat capacity 60 k, conduction "
       "300 (so that conduction and diffusion carry comparable heat), weights (1 - r)^2, repulsion "
-      "a = 0 or 25, time step 0.01. A repulsion that depends on temperature is left out.",
+      "a = 0 or 25 (in Fig. 2 and 3 also 25 T), time step 0.01.",
       fmt::format("Periodic box of {:g} x {:g} x {:g}; hot and cold slab of thickness 1 across z, "
                   "a quarter and three quarters up the box. Every step the internal energies of "
                   "the hot slab receive and those of the cold slab give the same heat, shared "

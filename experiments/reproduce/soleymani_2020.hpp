@@ -20,10 +20,14 @@ inline constexpr const char* contrast = "shardlow-s1";
 struct Combination {
   double repulsion;
   HeatForm heat_form;
+  double thermal_repulsion = 0;  ///< in proportion to the temperature, this at T = 1
   std::string name() const;
 };
 /// Without repulsion and with a constant one, each with both heat forms.
 const std::vector<Combination>& combinations();
+/// These and a repulsion in proportion to the temperature, with both heat forms. The paper's scheme
+/// does not run it.
+const std::vector<Combination>& all_combinations();
 
 /// The fluid of a combination: m = k = r_c = 1, friction 4.5 at T = 1 with the noise closure, heat
 /// capacity 60, conduction 300, weights (1 - r)^2.
