@@ -56,11 +56,15 @@ Outcome sum_of_parts(const Conditions&, const Records& records) {
   for (const auto& [name, record] : records) sum += record["number"].get<double>();
   Row row{"sum", "by hand", "kT", Interval{3, 3, 3}, "three", {sum, sum - 1, sum + 1}, {}, "|"};
   row.verdict = compare(row.ours, *row.paper, 1);
+  Row analytic{"by a formula", "", "1", {}, "", {2, 2, 2}, Verdict::agrees};
+  analytic.theory = Interval{2, 2, 2};
+  analytic.theory_text = "eq. 5";
   Row unknown{"what is not known", "", "1", {}, "", {not_a_number, 0, HUGE_VAL}};
   Field field{{"x"}, {"z"}, 0, 2, 0, 1, 2, 1, "T", {1, not_a_number}, {}, {1, 2}, {0, 0}};
   judge::Chart chart{"c", {"t"}, {"T"}, {{"ours", {{0, 1, {}, {}}, {1, not_a_number, {}, {}}}}}};
-  return {
-      {row, unknown}, {{"a field", "", {}, field}, {"a chart", "words", chart, {}}}, {"a remark"}};
+  return {{row, unknown, analytic},
+          {{"a field", "", {}, field}, {"a chart", "words", chart, {}}},
+          {"a remark"}};
 }
 
 const Experiment summing{"summing",          "A Fig. 1", "Summing",
@@ -131,7 +135,7 @@ TEST_F(Reproduce, AFailureIsReportedAndTheOthersGoOn) {
   EXPECT_EQ(papers["experiments"][0]["failure"], "part 1: part of number 1");
   EXPECT_TRUE(papers["experiments"][0]["rows"].empty());
   EXPECT_FALSE(papers["experiments"][1].contains("failure"));
-  EXPECT_EQ(papers["experiments"][1]["rows"].size(), 2U);
+  EXPECT_EQ(papers["experiments"][1]["rows"].size(), 3U);
   EXPECT_NE(papers_summary(papers).find("Failed: part 1: part of number 1"), std::string::npos);
 
   // What did not fail is kept.
@@ -180,11 +184,13 @@ TEST_F(Reproduce, WritesAReportThatCanBeReadAgain) {
 
 TEST_F(Reproduce, TheSummaryHasEveryRow) {
   const auto summary = papers_summary(reproduced(folder_.path(), 2));
-  EXPECT_NE(summary.find("| summing | A Fig. 1 | 0 | 1 | 0 | 1 |"), std::string::npos) << summary;
-  EXPECT_NE(summary.find("| sum, kT | by hand | 3: three | 4.1 (3.1 to 5.1) | differs | \\| |"),
+  EXPECT_NE(summary.find("| summing | A Fig. 1 | 1 | 1 | 0 | 1 |"), std::string::npos) << summary;
+  EXPECT_NE(summary.find("| sum, kT | by hand | 3: three | - | 4.1 (3.1 to 5.1) | differs | \\| |"),
             std::string::npos)
       << summary;
-  EXPECT_NE(summary.find("| what is not known |  | - | - | ours alone |  |"), std::string::npos);
+  EXPECT_NE(summary.find("| what is not known |  | - | - | - | ours alone |  |"),
+            std::string::npos);
+  EXPECT_NE(summary.find("| by a formula |  | - | 2: eq. 5 | 2 | agrees |  |"), std::string::npos);
 }
 
 TEST_F(Reproduce, AFolderThatCannotBeWrittenIsNamed) {

@@ -31,6 +31,8 @@ json to_json(const Row& row) {
                  {"explanation", row.explanation}};
   if (row.paper) record["paper"] = to_json(*row.paper);
   if (!row.paper_text.empty()) record["paper_text"] = row.paper_text;
+  if (row.theory) record["theory"] = to_json(*row.theory);
+  if (!row.theory_text.empty()) record["theory_text"] = row.theory_text;
   return record;
 }
 

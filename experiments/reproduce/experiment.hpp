@@ -50,17 +50,18 @@ struct Interval {
 /// +- 1.96 standard errors.
 Interval interval_of(const Estimate& estimate);
 
+/// Against the paper's value; against theory's where the paper's is not known to us.
 enum class Verdict {
-  agrees,        ///< our interval, widened by the paper's error, holds the paper's value
+  agrees,        ///< our interval, widened by the error of the other, holds the other value
   differs,       ///< it does not
   not_resolved,  ///< it is too wide to tell
-  ours_alone     ///< the paper gives no number here
+  ours_alone     ///< there is no number to compare with
 };
 
 /// "agrees", "differs", "not resolved", "ours alone".
 std::string to_string(Verdict verdict);
 
-/// One value of a paper beside ours.
+/// One value of a paper, or of theory, beside ours.
 struct Row {
   std::string quantity;  ///< "wall pressure P*"
   std::string setting;   ///< method, step, size: what it was measured at
@@ -70,6 +71,8 @@ struct Row {
   Interval ours;
   Verdict verdict = Verdict::ours_alone;
   std::string explanation = {};  ///< of a difference, or what the number shows; a sentence or two
+  std::optional<Interval> theory = {};  ///< what a formula or a law says, evaluated by us
+  std::string theory_text = {};         ///< which one: "analytic (eq. 17-26)"
 };
 
 /// For a value with its interval beside the paper's: differs if the two intervals have nothing in

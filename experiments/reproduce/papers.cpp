@@ -45,11 +45,17 @@ std::string interval_text(const json& interval) {
                      decimals);
 }
 
-std::string paper_text(const json& row) {
-  const std::string number = row.contains("paper") ? interval_text(row["paper"]) : "";
-  const std::string words = text_of(row, "paper_text");
+/// The number and the words of "paper" or of "theory".
+std::string number_and_words(const json& row, const std::string& of) {
+  const std::string number = row.contains(of) ? interval_text(row[of]) : "";
+  const std::string words = row.value(of + "_text", "");
   if (number.empty()) return words.empty() ? "-" : words;
   return words.empty() ? number : fmt::format("{}: {}", number, words);
+}
+
+bool has_theory(const json& rows) {
+  return std::any_of(rows.begin(), rows.end(),
+                     [](const json& row) { return row.contains("theory"); });
 }
 
 std::string overview(const json& papers) {
@@ -75,17 +81,20 @@ std::string rows_of(const json& experiment) {
   if (experiment.contains("failure")) {
     return fmt::format("Failed: {}\n", text_of(experiment, "failure"));
   }
-  std::string text =
-      "| quantity | setting | paper | ours (95 %) | verdict | explanation |\n"
-      "| --- | --- | --- | --- | --- | --- |\n";
+  const bool theory = has_theory(experiment["rows"]);
+  std::string text = fmt::format(
+      "| quantity | setting | paper |{} ours (95 %) | verdict | explanation |\n"
+      "| --- | --- | --- |{} --- | --- | --- |\n",
+      theory ? " theory |" : "", theory ? " --- |" : "");
   for (const auto& row : experiment["rows"]) {
     const std::string unit = text_of(row, "unit");
     const std::string quantity =
         text_of(row, "quantity") + (unit.empty() || unit == "1" ? "" : ", " + unit);
-    text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", cell(quantity),
-                        cell(text_of(row, "setting")), cell(paper_text(row)),
-                        interval_text(row["ours"]), text_of(row, "verdict"),
-                        cell(text_of(row, "explanation")));
+    const auto beside = [&](const char* of) { return cell(number_and_words(row, of)) + " |"; };
+    text += fmt::format("| {} | {} | {}{} {} | {} | {} |\n", cell(quantity),
+                        cell(text_of(row, "setting")), beside("paper"),
+                        theory ? " " + beside("theory") : "", interval_text(row["ours"]),
+                        text_of(row, "verdict"), cell(text_of(row, "explanation")));
   }
   return text;
 }
@@ -113,7 +122,11 @@ json united(const std::optional<json>& earlier, json papers) {
 }
 
 std::string papers_summary(const json& papers) {
-  std::string text = "# The papers' figures and values\n\n" + overview(papers);
+  std::string text =
+      "# The papers' figures and values\n\n"
+      "Verdicts are against the paper's value; against theory's where the paper's number is not "
+      "known to us.\n\n" +
+      overview(papers);
   for (const auto& experiment : papers["experiments"]) {
     text += fmt::format("\n## {}: {}\n\n`{}` (commit {})\n\n{}", text_of(experiment, "source"),
                         text_of(experiment, "title"), text_of(experiment, "command"),

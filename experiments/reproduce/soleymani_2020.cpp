@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace driftless::reproduce::so20 {
@@ -132,6 +133,27 @@ Interval exactly(double value) { return {value, value, value}; }
 std::string setting_of(const std::string& name, const std::string& method,
                        const std::string& more) {
   return fmt::format("{}; {}, step 0.01{}{}", name, method, more.empty() ? "" : "; ", more);
+}
+
+void put_theory(Row& row, double theory, std::string text, double resolution) {
+  row.theory = exactly(theory);
+  row.theory_text = std::move(text);
+  row.verdict = compare(row.ours, *row.theory, resolution);
+}
+
+Row about_row(std::string quantity, std::string setting, std::string words,
+              const std::vector<RatioAt>& ratios) {
+  constexpr double about = 0.25;
+  const auto off = [](const RatioAt& one) { return std::abs(one.ratio.value - 1); };
+  const auto farthest = std::max_element(
+      ratios.begin(), ratios.end(),
+      [&](const RatioAt& one, const RatioAt& other) { return off(one) < off(other); });
+  Row row{std::move(quantity), std::move(setting), "1", Interval{1, 1 - about, 1 + about},
+          std::move(words),    farthest->ratio};
+  row.verdict = compare(row.ours, *row.paper, about);
+  row.explanation = fmt::format("Of {} the one farthest from 1: {}. What is within {:g} % agrees.",
+                                ratios.size(), farthest->where, 100 * about);
+  return row;
 }
 
 std::vector<std::string> common_remarks(const Conditions& conditions) {

@@ -66,6 +66,23 @@ Interval exactly(double value);
 std::string setting_of(const std::string& name, const std::string& method,
                        const std::string& more = "");
 
+/// How the paper's formulas are named where theory stands beside ours: no number of them is known
+/// to us, so that they are evaluated here.
+inline constexpr const char* analytic_name = "analytic (eq. 17-26)";
+
+/// What theory says of ours, and the verdict against it.
+void put_theory(Row& row, double theory, std::string text, double resolution);
+
+/// A ratio to what it should be about, and where it was measured.
+struct RatioAt {
+  std::string where;
+  Interval ratio;
+};
+/// A sentence of the paper, "this is about that": that of the ratios which is farthest from 1,
+/// which agrees if it is within 25 %. There must be one.
+Row about_row(std::string quantity, std::string setting, std::string words,
+              const std::vector<RatioAt>& ratios);
+
 /// What was chosen for all of these experiments.
 std::vector<std::string> common_remarks(const Conditions& conditions);
 

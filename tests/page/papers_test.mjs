@@ -117,6 +117,27 @@ test('rows, verdicts and pictures are shown, without a fault', async () => {
   await page.context().close();
 });
 
+test('theory has a column of its own, and a verdict against it says so', async () => {
+  const theory = {value: 1, low: 1, high: 1};
+  const [experiment] = papers.experiments;
+  const rows = [
+    {...row('one', 'differs', 1.2), theory, theory_text: 'eq. 5'},
+    {...row('two', 'agrees', 1), theory},
+    row('three', 'differs', 1.2, {value: 1, low: 1, high: 1}),
+  ];
+  const {page} = await open(page_of({...papers, experiments: [{...experiment, rows}]}));
+  const columns = await page.$$eval('#rows-roll tr', (all) =>
+    all.map((one) => [...one.children].map(({textContent}) => textContent).slice(2, 6)),
+  );
+  assert.deepEqual(columns, [
+    ['paper', 'theory', 'ours, 95 %', 'verdict'],
+    ['–', '1: eq. 5', '1.200 ± 0.010', 'differs by +20 % (theory)'],
+    ['–', '1', '1.000 ± 0.010', 'agrees (theory)'],
+    ['1', '–', '1.200 ± 0.010', 'differs by +20 %'],
+  ]);
+  await page.context().close();
+});
+
 test('a link of the overview leads to its experiment', async () => {
   const {page} = await open(page_of(papers));
   await page.click('#overview-table a[href="#broken"]');

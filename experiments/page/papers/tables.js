@@ -53,22 +53,32 @@ function paper_cell({paper, paper_text}) {
   return paper_text ? `${value}: “${paper_text}”` : value;
 }
 
-// "differs by −4.2 %": of the paper's value.
-function verdict_text({verdict, paper, ours}) {
-  if (verdict !== 'differs' || !paper || !Number.isFinite(ours.value)) return verdict;
-  const difference = ours.value - paper.value;
+function theory_cell({theory, theory_text}) {
+  return [theory ? interval_text(theory) : '', theory_text ?? ''].filter(Boolean).join(': ') || '–';
+}
+
+// "differs by −4.2 %": of the paper's value, or else of theory's, which is said.
+function verdict_text({verdict, paper, theory, ours}) {
+  const other = paper ?? theory;
+  if (verdict === 'ours alone' || !other) return verdict;
+  const from = paper ? '' : ' (theory)';
+  if (verdict !== 'differs' || !Number.isFinite(ours.value)) return verdict + from;
+  const difference = ours.value - other.value;
   const sign = difference > 0 ? '+' : '';
-  return `differs by ${sign}${paper.value === 0 ? number(difference) : percent(difference / Math.abs(paper.value))}`;
+  return `differs by ${sign}${other.value === 0 ? number(difference) : percent(difference / Math.abs(other.value))}${from}`;
 }
 
 const with_unit = (text, unit) => (unit && unit !== '1' ? `${text}, ${unit}` : text);
 
 export function rows_table({name, rows}) {
-  const head = ['quantity', 'setting', 'paper', 'ours, 95 %', 'verdict', 'explanation'];
+  // Only some experiments have a theory beside a paper whose numbers are not known to us.
+  const theory = rows.some((row) => row.theory);
+  const head = ['quantity', 'setting', 'paper', ...(theory ? ['theory'] : []), 'ours, 95 %', 'verdict', 'explanation'];
   const body = rows.map((row) => [
     with_unit(row.quantity, row.unit),
     row.setting,
     {text: paper_cell(row), class: 'value'},
+    ...(theory ? [{text: theory_cell(row), class: 'value'}] : []),
     {text: interval_text(row.ours), class: 'value'},
     {text: verdict_text(row), class: `verdict ${css_class(row.verdict)}`},
     {text: row.explanation.replaceAll('+-', '±'), class: 'explanation'},
