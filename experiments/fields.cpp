@@ -15,13 +15,20 @@ constexpr std::size_t most_blocks = 32;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-std::size_t product(const Fields::Bins& bins) { return bins[0] * bins[1] * bins[2]; }
-
 /// JSON has no numbers that are not finite.
 json finite_or_null(const std::vector<double>& values) {
   json list = json::array();
   for (const double value : values) list.push_back(std::isfinite(value) ? json(value) : json());
   return list;
+}
+
+json by_name(const std::vector<Fields::Quantity>& quantities) {
+  json fields = json::object();
+  for (const auto& field : quantities) {
+    fields[field.name] = {{"values", finite_or_null(field.values)},
+                          {"errors", finite_or_null(field.errors)}};
+  }
+  return fields;
 }
 
 void add(const std::vector<double>& from, std::vector<double>& to) {
@@ -33,13 +40,16 @@ void add(const std::vector<double>& from, std::vector<double>& to) {
 Fields::Fields(const System& system, const Bins& bins)
     : lengths_(system.box().lengths),
       bins_(bins),
+      groups_(system.fluid().parameters().further_species.empty()
+                  ? 1
+                  : 2 + system.fluid().parameters().further_species.size()),
       isothermal_(system.fluid().isothermal()),
       boltzmann_(system.fluid().boltzmann()) {
   for (const auto count : bins) {
     if (count < 1 || count > most_bins) throw std::invalid_argument("too few or too many bins");
   }
-  if (product(bins) > most_bins) throw std::invalid_argument("too many bins");
-  sums_.resize(product(bins) * channels);
+  if (this->bins() > most_bins) throw std::invalid_argument("too many bins");
+  sums_.resize(groups_ * this->bins() * channels);
 }
 
 std::size_t Fields::bin_of(const Vector& position) const {
@@ -61,36 +71,45 @@ void Fields::sample(System& system, std::uint64_t) {
   ++samples_;
 }
 
-void Fields::sum_particles(const System& system) {
-  const State& state = system.state();
-  bin_.resize(state.size());
-  for (std::size_t i = 0; i < state.size(); ++i) {
-    const std::size_t bin = bin_of(state.position[i]);
-    bin_[i] = static_cast<std::uint32_t>(bin);
-    summed(bin, particles) += 1;
-    const double m = system.mass(i);
-    summed(bin, mass) += m;
-    summed(bin, momentum_x) += m * state.velocity[i][0];
-    summed(bin, momentum_y) += m * state.velocity[i][1];
-    summed(bin, momentum_z) += m * state.velocity[i][2];
-    if (isothermal_) continue;
-    const double u = state.internal_energy[i];
-    summed(bin, inverse_temperature) += 1 / system.equation_of_state(i).temperature(u);
-    summed(bin, internal_energy) += u;
+template <class Visit>
+void Fields::visit_cells(const System& system, Visit&& visit) const {
+  const auto& species = system.state().species;
+  for (std::size_t i = 0; i < bin_.size(); ++i) {
+    visit(i, std::size_t{bin_[i]});
+    const std::size_t own = species.empty() ? 0 : species[i];
+    if (groups_ > 1) visit(i, (1 + own) * bins() + bin_[i]);
   }
 }
 
-void Fields::sum_peculiar(const System& system) {
+void Fields::sum_particles(const System& system) {
   const State& state = system.state();
-  for (std::size_t i = 0; i < state.size(); ++i) {
-    const std::size_t bin = bin_[i];
-    const Vector momentum(summed(bin, momentum_x), summed(bin, momentum_y),
-                          summed(bin, momentum_z));
-    const Vector mean = momentum / summed(bin, mass);
-    summed(bin, peculiar) += system.mass(i) * (state.velocity[i] - mean).squaredNorm();
+  bin_.clear();
+  for (const auto& position : state.position) {
+    bin_.push_back(static_cast<std::uint32_t>(bin_of(position)));
   }
-  for (std::size_t bin = 0; bin < product(bins_); ++bin) {
-    summed(bin, freedom) = std::max(0.0, summed(bin, particles) - 1);
+  visit_cells(system, [&](std::size_t i, std::size_t cell) {
+    summed(cell, particles) += 1;
+    const double m = system.mass(i);
+    summed(cell, mass) += m;
+    summed(cell, momentum_x) += m * state.velocity[i][0];
+    summed(cell, momentum_y) += m * state.velocity[i][1];
+    summed(cell, momentum_z) += m * state.velocity[i][2];
+    if (isothermal_) return;
+    const double u = state.internal_energy[i];
+    summed(cell, inverse_temperature) += 1 / system.equation_of_state(i).temperature(u);
+    summed(cell, internal_energy) += u;
+  });
+}
+
+void Fields::sum_peculiar(const System& system) {
+  visit_cells(system, [&](std::size_t i, std::size_t cell) {
+    const Vector momentum(summed(cell, momentum_x), summed(cell, momentum_y),
+                          summed(cell, momentum_z));
+    const Vector mean = momentum / summed(cell, mass);
+    summed(cell, peculiar) += system.mass(i) * (system.state().velocity[i] - mean).squaredNorm();
+  });
+  for (std::size_t cell = 0; cell < groups_ * bins(); ++cell) {
+    summed(cell, freedom) = std::max(0.0, summed(cell, particles) - 1);
   }
 }
 
@@ -112,15 +131,15 @@ void Fields::add_to_block() {
   ++filled_;
 }
 
-double Fields::total(std::size_t bin, Channel channel) const {
+double Fields::total(std::size_t cell, Channel channel) const {
   if (channel == channels) return static_cast<double>(samples_);
   double sum = 0;
-  for (const auto& block : blocks_) sum += block[bin * channels + channel];
+  for (const auto& block : blocks_) sum += block[cell * channels + channel];
   return sum;
 }
 
 std::vector<Fields::Ratio> Fields::ratios() const {
-  const double bin_volume = lengths_.prod() / static_cast<double>(product(bins_));
+  const double bin_volume = lengths_.prod() / static_cast<double>(bins());
   std::vector<Ratio> all = {{"number_density", particles, channels, 1 / bin_volume},
                             {"velocity_x", momentum_x, mass, 1},
                             {"velocity_y", momentum_y, mass, 1},
@@ -135,13 +154,13 @@ std::vector<Fields::Ratio> Fields::ratios() const {
   return all;
 }
 
-double Fields::error(const Ratio& ratio, std::size_t bin) const {
+double Fields::error(const Ratio& ratio, std::size_t cell) const {
   const std::size_t whole = blocks_.size() - (filled_ < block_length_ ? 1 : 0);
   if (whole < 2) return infinity;
   const auto length = static_cast<double>(block_length_);
   Eigen::MatrixXd means(whole, 2);
   for (std::size_t block = 0; block < whole; ++block) {
-    const double* sums = blocks_[block].data() + bin * channels;
+    const double* sums = blocks_[block].data() + cell * channels;
     means.row(static_cast<Eigen::Index>(block)) << sums[ratio.numerator] / length,
         ratio.denominator == channels ? 1.0 : sums[ratio.denominator] / length;
   }
@@ -150,20 +169,20 @@ double Fields::error(const Ratio& ratio, std::size_t bin) const {
       .error;
 }
 
-Fields::Quantity Fields::quantity(const Ratio& ratio) const {
+Fields::Quantity Fields::quantity(const Ratio& ratio, std::size_t group) const {
   Quantity result{ratio.name, {}, {}};
-  for (std::size_t bin = 0; bin < product(bins_); ++bin) {
-    const double below = total(bin, ratio.denominator);
+  for (std::size_t cell = group * bins(); cell < (group + 1) * bins(); ++cell) {
+    const double below = total(cell, ratio.denominator);
     const bool known = below > 0;
-    result.values.push_back(known ? ratio.factor * total(bin, ratio.numerator) / below : nothing);
-    result.errors.push_back(known ? error(ratio, bin) : infinity);
+    result.values.push_back(known ? ratio.factor * total(cell, ratio.numerator) / below : nothing);
+    result.errors.push_back(known ? error(ratio, cell) : infinity);
   }
   return result;
 }
 
-std::vector<Fields::Quantity> Fields::quantities() const {
+std::vector<Fields::Quantity> Fields::quantities_of(std::size_t group) const {
   std::vector<Quantity> all;
-  for (const auto& ratio : ratios()) all.push_back(quantity(ratio));
+  for (const auto& ratio : ratios()) all.push_back(quantity(ratio, group));
   return all;
 }
 
@@ -175,15 +194,19 @@ json Fields::to_json() const {
                     {"to", lengths_[axis]},
                     {"bins", bins_[static_cast<std::size_t>(axis)]}});
   }
-  json fields = json::object();
-  for (const auto& field : quantities()) {
-    fields[field.name] = {{"values", finite_or_null(field.values)},
-                          {"errors", finite_or_null(field.errors)}};
-  }
-  return {{"axes", axes}, {"bins", bins_}, {"samples", samples_}, {"quantities", fields}};
+  json record = {{"axes", axes},
+                 {"bins", bins_},
+                 {"samples", samples_},
+                 {"quantities", by_name(quantities())}};
+  for (std::size_t n = 0; n < species(); ++n) record["species"].push_back(by_name(quantities(n)));
+  return record;
 }
 
-json Fields::settings() const { return {{"bins", bins_}}; }
+json Fields::settings() const {
+  json settings = {{"bins", bins_}};
+  if (species() > 0) settings["species"] = species();
+  return settings;
+}
 
 json Fields::save() {
   json blocks = json::array();

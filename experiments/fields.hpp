@@ -15,7 +15,8 @@ namespace driftless {
 /// freedom a direction, so that neither a flow nor few particles bias the kinetic temperature (but
 /// a gradient of the flow inside a bin counts as heat); particles over the sum of their inverse
 /// temperatures; internal energy over particles. Without internal energies, or where k is 0, the
-/// quantities that need them are left out.
+/// quantities that need them are left out. Where there are several species each has all of them for
+/// itself too, its velocities about its own mean.
 ///
 /// Errors come from 16 to 32 blocks of samples, as many samples each, in which correlations in time
 /// average out, and from estimate() for what correlation the blocks still have. A block that is
@@ -41,11 +42,16 @@ class Fields : public Observer {
     std::vector<double> values;  ///< NaN where there was nothing to average
     std::vector<double> errors;  ///< values +- 1.96 errors cover 95 %; infinite if unknown
   };
-  std::vector<Quantity> quantities() const;
+  /// Of all particles.
+  std::vector<Quantity> quantities() const { return quantities_of(0); }
+  /// Of one species, below species(), which is 0 where there is one alone.
+  std::vector<Quantity> quantities(std::size_t species) const { return quantities_of(species + 1); }
+  std::size_t species() const { return groups_ - 1; }
   std::uint64_t samples() const { return samples_; }
 
   /// {"axes": [{"axis", "from", "to", "bins"}], "bins": [x, y, z], "samples", "quantities": {name:
-  /// {"values", "errors"}}}; null is written for what is not finite.
+  /// {"values", "errors"}}}; null is written for what is not finite. Where there are several
+  /// species "species" lists the quantities of each.
   nlohmann::json to_json() const;
 
  private:
@@ -69,18 +75,26 @@ class Fields : public Observer {
     double factor;
   };
   std::vector<Ratio> ratios() const;
-  Quantity quantity(const Ratio& ratio) const;
-  double error(const Ratio& ratio, std::size_t bin) const;
+  std::vector<Quantity> quantities_of(std::size_t group) const;
+  Quantity quantity(const Ratio& ratio, std::size_t group) const;
+  double error(const Ratio& ratio, std::size_t cell) const;
 
+  std::size_t bins() const { return bins_[0] * bins_[1] * bins_[2]; }
   std::size_t bin_of(const Vector& position) const;
-  double& summed(std::size_t bin, Channel channel) { return sums_[bin * channels + channel]; }
-  double total(std::size_t bin, Channel channel) const;
+  /// What is summed of a group, 0 for all particles, n + 1 for species n, in a bin: cell group *
+  /// bins() + bin.
+  double& summed(std::size_t cell, Channel channel) { return sums_[cell * channels + channel]; }
+  double total(std::size_t cell, Channel channel) const;
+  /// Calls visit(i, cell) for every particle i and the cells that it counts in.
+  template <class Visit>
+  void visit_cells(const System& system, Visit&& visit) const;
   void sum_particles(const System& system);
   void sum_peculiar(const System& system);
   void add_to_block();
 
   Vector lengths_;
   Bins bins_;
+  std::size_t groups_;
   bool isothermal_;
   double boltzmann_;
   std::uint64_t samples_ = 0;

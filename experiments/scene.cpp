@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "experiments/bounded_presets.hpp"
 #include "experiments/scene_keys.hpp"
 
 namespace driftless {
@@ -175,6 +176,9 @@ const std::vector<Preset>& presets() {
        "Groot, Warren, J. Chem. Phys. 107, 4423 (1997): a = 25, density 3, sigma = 3 (friction "
        "4.5), k T = 1, isothermal",
        groot_warren_1997()},
+      mackie_1999_box(),
+      mackie_1999_roll(),
+      soleymani_2020_slabs(),
   };
   return all;
 }

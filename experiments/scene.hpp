@@ -59,7 +59,7 @@ struct Preset {
   Scene scene;
 };
 
-/// mackie-1999, soft-fluid, two-body, groot-warren-1997.
+/// Under the names that scenes refer to; those with walls or heat slabs come last.
 const std::vector<Preset>& presets();
 
 /// Predicted relaxation time of internal energies (derived: friction at rate rho zeta_0 [w]/(2 m

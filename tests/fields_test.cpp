@@ -46,12 +46,17 @@ System system_of(const std::vector<Particle>& particles,
   return System(Fluid(fluid), Box{Vector(4, 6, 8)}, state_of(particles), Noise(1, 0));
 }
 
-std::vector<double> values(const Fields& fields, const std::string& name) {
-  for (const auto& quantity : fields.quantities()) {
+std::vector<double> values_of(const std::vector<Fields::Quantity>& quantities,
+                              const std::string& name) {
+  for (const auto& quantity : quantities) {
     if (quantity.name == name) return quantity.values;
   }
   ADD_FAILURE() << name;
   return {};
+}
+
+std::vector<double> values(const Fields& fields, const std::string& name) {
+  return values_of(fields.quantities(), name);
 }
 
 /// Three particles in the bin x < 2, two beyond, none of them at the same place in y and z.
@@ -104,6 +109,32 @@ TEST(Fields, OfTwoSpeciesMoveWithTheirCentreOfMass) {
   EXPECT_NEAR(values(fields, "kinetic_temperature")[0], energy / (3 * 0.5 * 2), 1e-13);
   // Temperatures 10/5, 20/5 and 40/10.
   EXPECT_NEAR(values(fields, "internal_temperature")[0], 3 / (0.5 + 0.25 + 0.25), 1e-14);
+}
+
+TEST(Fields, OfEachSpeciesAreItsOwn) {
+  System system = system_of_two_species();
+  Fields fields(system, {2, 1, 1});
+  fields.sample(system, 0);
+  ASSERT_EQ(fields.species(), 2U);
+  const auto of = [&](std::size_t species, const char* name) {
+    return values_of(fields.quantities(species), name);
+  };
+  const double volume = 4.0 * 6 * 8 / 2;
+  EXPECT_EQ(of(0, "number_density"), (std::vector<double>{1 / volume, 2 / volume}));
+  EXPECT_EQ(of(1, "number_density"), (std::vector<double>{2 / volume, 0}));
+  EXPECT_EQ(of(0, "velocity_x"), (std::vector<double>{2, -1}));
+  EXPECT_EQ(of(1, "velocity_x")[0], 2);
+  EXPECT_TRUE(std::isnan(of(1, "velocity_x")[1]));
+  // Two of mass 6 with (-1, 0, -1.5) and its opposite about their mean; one particle has none.
+  EXPECT_NEAR(of(1, "kinetic_temperature")[0], 6 * 2 * (1 + 2.25) / (3 * 0.5), 1e-13);
+  EXPECT_TRUE(std::isnan(of(0, "kinetic_temperature")[0]));
+  EXPECT_NEAR(of(1, "internal_temperature")[0], 2 / (0.5 + 0.25), 1e-14);
+  EXPECT_NEAR(of(0, "internal_temperature")[0], 4, 1e-14);
+  EXPECT_EQ(of(1, "internal_energy")[0], 15);
+  const auto written = fields.to_json();
+  ASSERT_EQ(written["species"].size(), 2U);
+  EXPECT_EQ(written["species"][1]["internal_energy"]["values"][0], 15.0);
+  EXPECT_FALSE(Fields(system_of(five()), {1, 1, 1}).to_json().contains("species"));
 }
 
 TEST(Fields, BinsAreCountedAlongXFirst) {
@@ -359,6 +390,8 @@ void expect_the_same_after_a_restart(const Make& make, System& system) {
 TEST(Fields, GoOnFromWhatTheySaved) {
   System system = system_of(five());
   expect_the_same_after_a_restart([&] { return Fields(system, {2, 1, 2}); }, system);
+  System two = system_of_two_species();
+  expect_the_same_after_a_restart([&] { return Fields(two, {2, 1, 1}); }, two);
 }
 
 TEST(Monitor, GoesOnFromWhatItSaved) {

@@ -5,6 +5,7 @@
 
 #include "experiments/binned_law.hpp"
 #include "experiments/reproduce/mackie_roll.hpp"
+#include "experiments/scene_keys.hpp"
 
 /// The boxes of Mackie, Bonet Avalos, Navas (1999): starts, walls, pressures and rolls beside what
 /// is known exactly.
@@ -189,6 +190,34 @@ TEST(MackieRoll, FlowIsTheAmplitudeOfTheStreamFunction) {
                   -2 * std::cos(2 * at[0]) * std::sin(at[2]));
   };
   EXPECT_NEAR(flow_of(two_rolls), 0, 1e-9);
+}
+
+/// A preset's fluid, but for the temperature that a start needs.
+FluidParameters fluid_of(const Scene& scene) {
+  auto fluid = scene.fluid;
+  fluid.temperature = FluidParameters{}.temperature;
+  return fluid;
+}
+
+TEST(MackiePresets, AreTheScenesOfTheExperiments) {
+  const Scene box = find_preset("mackie-1999-box")->scene;
+  EXPECT_EQ(fluid_of(box), mackie_parameters(mackie_liquid));
+  const Box cube =
+      mackie_cube(30000, mackie_reservoir(box.fluid, mackie_temperature, mackie_repulsion));
+  EXPECT_EQ(scene_box(box).walls, cube.walls);
+  EXPECT_LT((scene_box(box).lengths - cube.lengths).norm(), 1e-12);
+  EXPECT_EQ(box.fluid.temperature, mackie_temperature);
+
+  const Scene roll = find_preset("mackie-1999-roll")->scene;
+  EXPECT_EQ(fluid_of(roll), mackie_parameters(mackie_gas));
+  EXPECT_EQ(roll.particles, roll_particles);
+  EXPECT_LT((scene_box(roll).lengths - Vector::Constant(roll_side())).norm(), 1e-12);
+  EXPECT_EQ(roll.walls[0], mackie_reservoir(roll.fluid, hot, {}));
+  EXPECT_EQ(roll.walls[1], mackie_reservoir(roll.fluid, cold, {}));
+  EXPECT_EQ(roll.walls[4], Wall{});
+  EXPECT_EQ(roll.walls[5], Wall{});
+  EXPECT_FALSE(roll.walls[2] || roll.walls[3]);
+  EXPECT_EQ(roll.gravity, Vector(0, 0, -gravity));
 }
 
 TEST(MackieRoll, RunsAlikeOnAnyThreadsAndInPieces) {

@@ -5,6 +5,7 @@
 
 #include "experiments/reproduce/reproduce.hpp"
 #include "experiments/reproduce/soleymani_2020.hpp"
+#include "experiments/scene_keys.hpp"
 
 /// What is concluded from heat between slabs, from records made up so that the answer is known:
 /// once all is as theory has it, once a planted number is wrong.
@@ -57,6 +58,16 @@ struct Fluid {
            2 * pi * density * density / 15 * strength() / 105;
   }
 };
+
+TEST(SoleymaniPreset, IsTheSceneOfTheExperiments) {
+  const Scene scene = find_preset("soleymani-2020-slabs")->scene;
+  const so20::Combination constant{25, HeatForm::inverse_temperature};
+  EXPECT_EQ(scene.fluid, so20::fluid_of(constant));
+  const auto fluid = so20::box_of(constant, so20::published, {Effort::full, 1});
+  EXPECT_LT((scene_box(scene).lengths - fluid.lengths).norm(), 1e-12);
+  EXPECT_EQ(scene.density, fluid.density);
+  EXPECT_EQ(scene.particles, fluid.particles());
+}
 
 // ---- Fig. 4
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "experiments/prepared_scene.hpp"
 #include "experiments/scene_keys.hpp"
@@ -78,6 +79,31 @@ TEST(WalledScene, StartsAtOneTemperatureAndAtRest) {
   for (std::size_t i = 0; i < system.size(); ++i) {
     const double u = system.state().internal_energy[i];
     EXPECT_NEAR(system.equation_of_state(i).temperature(u), 1.1, 1e-12);
+  }
+}
+
+/// Nothing is lost between the fluid and what drives it, which takes part.
+TEST(BoundedPresets, RunAndExchangeEnergyWithTheirSurroundings) {
+  for (json object : {json{{"preset", "mackie-1999-box"}, {"particles", 1000}},
+                      json{{"preset", "mackie-1999-roll"}, {"particles", 1000}},
+                      json{{"preset", "soleymani-2020-slabs"}}}) {
+    SCOPED_TRACE(object["preset"]);
+    const bool has_repulsion = object["preset"] == "soleymani-2020-slabs";
+    // The start of a soft fluid from its law is a Monte Carlo run.
+    if (has_repulsion) object["initial_state"] = "rest";
+    const PreparedScene prepared(read(object), 3, 1);
+    System system = prepared.start(0);
+    const double energy = system.energy_with_surroundings();
+    const double inside = system.total_energy();
+    const auto integrator = prepared.driven(
+        find_method("splitting-energy-reinjection")->make({{"reinject_potential", true}}), 0);
+    judge::run(*integrator, system, 0.01, 1, 20);
+    EXPECT_NEAR(system.energy_with_surroundings(), energy, 1e-9 * energy);
+    if (has_repulsion) {
+      EXPECT_NEAR(system.total_energy(), inside, 1e-9 * energy) << "one slab gives what one gets";
+    } else {
+      EXPECT_GT(std::abs(system.total_energy() - inside), 1e-6 * energy);
+    }
   }
 }
 

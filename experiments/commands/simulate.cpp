@@ -14,7 +14,9 @@ void add_simulate(CLI::App& app, std::string call) {
                          "checkpoint");
   const auto simulated = std::make_shared<SimulateArguments>();
   simulated->command = std::move(call);
-  command->add_option("scene", simulated->scene, "a preset's name, or a JSON file of one scene")
+  command
+      ->add_option("scene", simulated->scene,
+                   "a preset's name (see `driftless scenes`), or a JSON file of one scene")
       ->required();
   command->add_option("--method", simulated->method, "NAME or NAME:option=value,option=value")
       ->required();

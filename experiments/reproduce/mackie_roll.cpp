@@ -5,6 +5,7 @@
 
 #include "experiments/checkpoint.hpp"
 #include "experiments/fields.hpp"
+#include "experiments/scene_keys.hpp"
 #include "model/initial.hpp"
 
 namespace driftless::reproduce {
@@ -18,16 +19,17 @@ constexpr std::size_t bins = 24;
 /// The place of the hot wall; the cold one's is the next.
 std::size_t hot_face(const RollRun& run) { return run.hot_wall == HotWall::floor ? 4 : 0; }
 
-/// Hard walls on all faces but those across y, which are periodic: two opposite ones reservoirs,
-/// the others without heat.
-Box roll_box(const FluidParameters& fluid, const RollRun& run) {
+/// The scene mackie-1999-roll, less deep, whose reservoirs are on the left and on the right, or
+/// these walls and the other two exchanged.
+Box roll_box(const RollRun& run) {
+  Scene scene = find_preset("mackie-1999-roll")->scene;
   const double side = roll_side();
-  Box box{Vector(side, static_cast<double>(run.particles) / (side * side), side)};
-  for (const std::size_t face : {0, 1, 4, 5}) box.walls[face] = Wall{};
-  box.walls[hot_face(run)] = mackie_reservoir(fluid, hot, {});
-  box.walls[hot_face(run) + 1] = mackie_reservoir(fluid, cold, {});
-  box.gravity = Vector(0, 0, -run.gravity);
-  return box;
+  if (run.hot_wall == HotWall::floor) {
+    std::swap(scene.walls[0], scene.walls[4]);
+    std::swap(scene.walls[1], scene.walls[5]);
+  }
+  return {Vector(side, static_cast<double>(run.particles) / (side * side), side), scene.walls,
+          Vector(0, 0, -run.gravity)};
 }
 
 class RollSeries : public Observer {
@@ -79,7 +81,7 @@ double roll_flow(const System& system) {
 
 json run_roll(const RollRun& run, std::uint64_t seed, const Workplace& workplace) {
   const auto fluid = mackie_parameters(mackie_gas);
-  const Box box = roll_box(fluid, run);
+  const Box box = roll_box(run);
   const Noise noise(seed, 0);
   System system(Fluid(fluid), box,
                 mackie_in_law(fluid, box, run.particles, 0.5 * (hot + cold), 0, noise), noise);
