@@ -121,14 +121,16 @@ constexpr double checked_scaling = 50;
 std::vector<Part> parts(const Conditions& conditions) {
   std::vector<Part> all;
   for (const double range : {am99::few, am99::many}) {
-    all.push_back({"network, " + neighbours(range), range == am99::few ? 1.0 : 20.0, false,
+    // Few neighbours take more iterations.
+    const double networks = conditions.effort == Effort::quick ? 1 : 20;
+    all.push_back({"network, " + neighbours(range), (range == am99::few ? 6 : 2) * networks, false,
                    [=](const Workplace&) { return network(range, conditions); }});
     const auto add = [&](const std::string& way, double scaling, double step, auto* measure,
                          double times) {
       const double pairs = 4 * pi / 6 * std::pow(range, 3);
       const double steps =
           times * wave_time(range, scaling) / step * run_of(range, scaling, conditions).replicas;
-      all.push_back({name_of(way, range, scaling), 1000 * steps * (1e-7 + 5e-8 * pairs), false,
+      all.push_back({name_of(way, range, scaling), 1000 * steps * (1.6e-7 + 8e-8 * pairs), false,
                      [=](const Workplace&) { return measure(range, scaling, step, conditions); }});
     };
     for (const double scaling : scalings(range, conditions.effort)) {

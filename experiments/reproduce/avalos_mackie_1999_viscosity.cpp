@@ -56,7 +56,7 @@ struct Plan {
   double seconds() const {
     const double pairs = 4 * pi / 6 * std::pow(run.fluid.friction_range, 3);
     return run.replicas * schedule.impositions * schedule.samples * schedule.stride *
-           static_cast<double>(run.box.particles) * (1e-7 + 5e-8 * pairs);
+           static_cast<double>(run.box.particles) * (1.2e-7 + 6e-8 * pairs);
   }
 };
 

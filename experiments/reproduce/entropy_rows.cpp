@@ -48,7 +48,7 @@ void add_entropy_parts(const judge::Candidate& candidate, const Wanted& wanted,
                        const Conditions& conditions, std::vector<Part>& all) {
   const bool quick = conditions.effort == Effort::quick;
   const std::size_t copies = quick ? 100000 : 1000000;
-  const double seconds = quick ? 3 : 30;  // of the smallest step
+  const double seconds = quick ? 0.4 : 4;  // of the smallest step
   for (const auto& asked : judge::pair_cases(candidate)) {
     if (!asked.relaxes || !wanted(asked)) continue;
     for (const double step : judge::entropy_steps()) {

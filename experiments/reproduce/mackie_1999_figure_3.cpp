@@ -63,7 +63,7 @@ std::vector<Part> parts(const Conditions& conditions) {
   std::vector<Part> all;
   for (const auto& asked : runs_of(conditions.effort)) {
     for (unsigned replica = 0; replica < asked.replicas; ++replica) {
-      all.push_back({asked.part(replica), 1e-7 * particles * duration / time_step, false,
+      all.push_back({asked.part(replica), 3.2e-7 * particles * duration / time_step, false,
                      [asked, replica, seed = conditions.seed](const Workplace& workplace) {
                        return run(asked, seed, replica, workplace);
                      }});

@@ -61,7 +61,7 @@ std::vector<Part> parts(const Conditions& conditions) {
   std::vector<Part> all;
   std::uint64_t seed = 1000 * conditions.seed;
   for (const auto& [name, run, wide] : runs_of(conditions.effort)) {
-    const double cost = 1.5e-7 * static_cast<double>(run.particles) * run.duration / run.time_step;
+    const double cost = 9e-7 * static_cast<double>(run.particles) * run.duration / run.time_step;
     all.push_back({name, cost, wide, [run = run, seed](const Workplace& workplace) {
                      return run_roll(run, seed, workplace);
                    }});
@@ -69,7 +69,7 @@ std::vector<Part> parts(const Conditions& conditions) {
   }
   for (const auto& method : {published, splitting}) {
     for (const double step : checked_steps()) {
-      all.push_back({check_name(method, step), 5 * 0.02 / step, false,
+      all.push_back({check_name(method, step), 2 * 0.02 / step, false,
                      [=](const Workplace&) { return run_step_check(method, step, seed); }});
     }
   }

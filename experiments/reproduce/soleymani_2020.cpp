@@ -80,7 +80,8 @@ flux::SlabRun slabs_of(const flux::PeriodicFluid& fluid, double heat_flux, Effor
 double equilibrium_duration(Effort effort) { return effort == Effort::quick ? 36 : 240; }
 
 double cost_of(const flux::PeriodicFluid& fluid, double duration) {
-  return 6e-7 * static_cast<double>(fluid.particles()) * duration / fluid.step;
+  const double particle_step = 6e-8 * (2 + fluid.density) * (fluid.fluid.repulsion == 0 ? 1 : 1.3);
+  return particle_step * static_cast<double>(fluid.particles()) * duration / fluid.step;
 }
 
 json or_failure(const std::function<json()>& work) {

@@ -90,7 +90,9 @@ std::vector<Part> parts(const Conditions& conditions) {
   for (const auto& point : all_points()) {
     const auto fluid = fluid_at(point, conditions);
     const auto slabs = slabs_of(fluid, heat_flux, conditions.effort);
-    const double shear = 12 * static_cast<double>(shear_replicas(conditions.effort));
+    // With repulsion every replica comes to equilibrium first.
+    const double replica = point.repulsion == 0 ? 12 : 30;
+    const double shear = replica * static_cast<double>(shear_replicas(conditions.effort));
     const double duration =
         slabs.settle + slabs.duration + equilibrium_duration(conditions.effort) + shear;
     all.push_back(

@@ -66,7 +66,7 @@ std::vector<Part> parts(const Conditions& conditions) {
   std::vector<Part> all;
   for (const auto& point : all_points()) {
     const auto run = run_of(point, conditions);
-    all.push_back({point.name(), 1.3 * cost_of(run.fluid, run.settle + run.duration), false,
+    all.push_back({point.name(), 1.1 * cost_of(run.fluid, run.settle + run.duration), false,
                    [run](const Workplace&) {
                      return or_failure([&] { return flux::run_between_slabs(run); });
                    }});

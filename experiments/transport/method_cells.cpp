@@ -235,7 +235,7 @@ Estimate sound_at(const TransportScene& scene, const MethodChoice& method, doubl
 double predicted_seconds(const TransportScene& scene, double step) {
   const auto range = Fluid(scene.fluid).range();
   const double pairs = 2 * std::numbers::pi / 3 * std::pow(range, 3) * scene.density;
-  const double particle_step = 1.5e-7 + 7e-8 * pairs;
+  const double particle_step = 9e-8 + 4e-8 * pairs;
   const double in_cube = std::pow(scene.cube_side, 3) * scene.density;
   const double in_flow = scene.flow_length * scene.flow_width * scene.flow_width * scene.density;
   const double cube_time =
