@@ -66,7 +66,7 @@ void PairPass::reserve(std::size_t pairs) {
   // All members but the law.
   constexpr std::size_t columns = sizeof(PairArrays) / sizeof(double*) - 1;
   static_assert(sizeof(PairArrays) == (columns + 1) * sizeof(double*));
-  capacity_ = (pairs + pairs / 8 + 15) / 8 * 8;
+  capacity_ = (pairs + 7) / 8 * 8;
   const std::size_t stride = capacity_ + 2 * 8;  // lanes of any processor, and no two columns alike
   memory_.assign(columns * stride, 0.0);
   double* next = memory_.data();
@@ -84,8 +84,6 @@ void PairPass::reserve(std::size_t pairs) {
   std::fill_n(arrays_.heat_uniform, stride, 1.0);
   id_i_.resize(stride);
   id_j_.resize(stride);
-  to_i_.resize(stride);
-  to_j_.resize(stride);
 }
 
 void PairPass::take(const Fluid& fluid, const CellGrid& cells, const PairIndices& pairs,
@@ -96,6 +94,24 @@ void PairPass::take(const Fluid& fluid, const CellGrid& cells, const PairIndices
   i_ = pairs.i.data() + first;
   j_ = pairs.j.data() + first;
   count_ = count;
+}
+
+void PairPass::take(const Fluid& fluid, const CellGrid& cells, const GroupedPairs& grouped,
+                    std::size_t first, std::size_t count) {
+  take(fluid, cells, grouped.pairs, 0, count);
+  ordered_i_.resize(capacity_ + 2 * 8);
+  ordered_j_.resize(capacity_ + 2 * 8);
+  const std::uint32_t* const order = grouped.groups.order.data() + first;
+  for (std::size_t n = 0; n < count; ++n) {
+    ordered_i_[n] = i_[order[n]];
+    ordered_j_[n] = j_[order[n]];
+  }
+  // Beyond the last pair a particle of this block: another may be at work on any other.
+  for (std::size_t n = count; count > 0 && n < count + 2 * Lanes::count(); ++n) {
+    ordered_i_[n] = ordered_j_[n] = ordered_i_[count - 1];
+  }
+  i_ = ordered_i_.data();
+  j_ = ordered_j_.data();
 }
 
 void PairPass::geometry(std::size_t from, std::size_t to) {
@@ -259,17 +275,22 @@ void PairPass::trial(const PassParticles& particles) {
 
 void PairPass::add(Quadruple* sums) {
   const PassClock clock(part(&PassSeconds::scatter));
-  for (std::size_t n = 0; n < count_; n += Lanes::count()) {
-    const Lanes momentum = Lanes::load(arrays_.momentum + n);
-    const Lanes x = momentum * Lanes::load(arrays_.e_x + n),
-                y = momentum * Lanes::load(arrays_.e_y + n),
-                z = momentum * Lanes::load(arrays_.e_z + n);
-    turn({x, y, z, Lanes::load(arrays_.energy_i + n)}, &to_i_[n]);
-    turn({-x, -y, -z, Lanes::load(arrays_.energy_j + n)}, &to_j_[n]);
-  }
-  for (std::size_t n = 0; n < count_; ++n) {
-    sums[i_[n]] += to_i_[n];
-    sums[j_[n]] += to_j_[n];
+  constexpr std::size_t at_once = 64;
+  Quadruple to_i[at_once], to_j[at_once];
+  for (std::size_t first = 0; first < count_; first += at_once) {
+    const std::size_t end = std::min(first + at_once, count_);
+    for (std::size_t n = first; n < end; n += Lanes::count()) {
+      const Lanes momentum = Lanes::load(arrays_.momentum + n);
+      const Lanes x = momentum * Lanes::load(arrays_.e_x + n),
+                  y = momentum * Lanes::load(arrays_.e_y + n),
+                  z = momentum * Lanes::load(arrays_.e_z + n);
+      turn({x, y, z, Lanes::load(arrays_.energy_i + n)}, &to_i[n - first]);
+      turn({-x, -y, -z, Lanes::load(arrays_.energy_j + n)}, &to_j[n - first]);
+    }
+    for (std::size_t n = first; n < end; ++n) {
+      sums[i_[n]] += to_i[n - first];
+      sums[j_[n]] += to_j[n - first];
+    }
   }
 }
 
@@ -279,6 +300,7 @@ bool PairPass::apply(const PassParticles& particles, std::size_t from, std::size
                inverse_mass_j = arrays_.law->inverse_mass_j();
   Quadruple* const result = particles.result;
   const bool isothermal = fluid_->isothermal();
+  Quadruple to_i[Lanes::count()], to_j[Lanes::count()];
   bool positive = true;
   for (std::size_t n = from; n < to; n += Lanes::count()) {
     const Lanes momentum = Lanes::load(arrays_.momentum + n);
@@ -288,12 +310,12 @@ bool PairPass::apply(const PassParticles& particles, std::size_t from, std::size
     const auto i = fetch(result, i_ + n), j = fetch(result, j_ + n);
     const Lanes u_i = isothermal ? i.energy : i.energy + Lanes::load(arrays_.energy_i + n);
     const Lanes u_j = isothermal ? j.energy : j.energy + Lanes::load(arrays_.energy_j + n);
-    turn({i.x + by_i * e_x, i.y + by_i * e_y, i.z + by_i * e_z, u_i}, &to_i_[0]);
-    turn({j.x - by_j * e_x, j.y - by_j * e_y, j.z - by_j * e_z, u_j}, &to_j_[0]);
+    turn({i.x + by_i * e_x, i.y + by_i * e_y, i.z + by_i * e_z, u_i}, to_i);
+    turn({j.x - by_j * e_x, j.y - by_j * e_y, j.z - by_j * e_z, u_j}, to_j);
     const std::size_t count = std::min(Lanes::count(), to - n);
     for (std::size_t lane = 0; lane < count; ++lane) {
-      result[i_[n + lane]] = to_i_[lane];
-      result[j_[n + lane]] = to_j_[lane];
+      result[i_[n + lane]] = to_i[lane];
+      result[j_[n + lane]] = to_j[lane];
     }
     if (isothermal) continue;
     const auto counted = hn::FirstN(Doubles(), count);

@@ -63,6 +63,9 @@ class PairPass {
   /// What the passes below speak of: these pairs of this fluid from `first` on.
   void take(const Fluid& fluid, const CellGrid& cells, const PairIndices& pairs, std::size_t first,
             std::size_t count);
+  /// The same in the order of groups.
+  void take(const Fluid& fluid, const CellGrid& cells, const GroupedPairs& grouped,
+            std::size_t first, std::size_t count);
   /// The laws of those that the next passes treat.
   void set_law(const PairLaw& law) { arrays_.law = &law; }
 
@@ -93,6 +96,9 @@ class PairPass {
   bool apply_contacts(const PassParticles& particles, std::size_t from, std::size_t to);
 
   const PairArrays& arrays() const { return arrays_; }
+  /// The particles of the n-th pair, in the order of cells.
+  std::uint32_t i(std::size_t n) const { return i_[n]; }
+  std::uint32_t j(std::size_t n) const { return j_[n]; }
 
   void measure(bool on) { measured_ = on; }
   const PassSeconds& seconds() const { return seconds_; }
@@ -117,7 +123,7 @@ class PairPass {
   std::vector<double> memory_;
   PairArrays arrays_{};
   std::vector<std::uint32_t> id_i_, id_j_;
-  std::vector<Quadruple> to_i_, to_j_;
+  std::vector<std::uint32_t> ordered_i_, ordered_j_;
 };
 
 }  // namespace driftless

@@ -202,22 +202,15 @@ std::uint32_t kind_of(const PairIndices& pairs, std::size_t n, const CellGrid& c
                                     cells.species(pairs.j[n]));
 }
 
-/// Pairs that belong to groups, put side by side.
-void sort_by_group(const PairIndices& found, const std::vector<std::uint32_t>& group,
-                   std::uint32_t groups, PairGroups& sorted) {
+/// Puts the pairs of each group side by side.
+void sort_by_group(const std::vector<std::uint32_t>& group, std::uint32_t groups,
+                   PairGroups& sorted) {
   sorted.end.assign(groups + 1, 0);
-  for (std::size_t n = 0; n < found.size; ++n) ++sorted.end[group[n] + 1];
+  for (const auto g : group) ++sorted.end[g + 1];
   for (std::uint32_t g = 0; g < groups; ++g) sorted.end[g + 1] += sorted.end[g];
-  sorted.pairs.size = 0;
-  sorted.pairs.reserve(found.size);
-  for (std::size_t n = 0; n < found.size; ++n) {
-    const auto place = sorted.end[group[n]]++;
-    sorted.pairs.i[place] = found.i[n];
-    sorted.pairs.j[place] = found.j[n];
-  }
-  sorted.pairs.size = found.size;
+  resize_closely(sorted.order, group.size());
+  for (std::uint32_t n = 0; n < group.size(); ++n) sorted.order[sorted.end[group[n]]++] = n;
   sorted.end.pop_back();
-  pad(sorted.pairs);
 }
 
 /// Each pair's group, the first in which neither of its particles is; `used` has a bit for each
@@ -264,8 +257,8 @@ constexpr std::size_t particles_a_block = 500;  // so that a block's arrays stay
 void PairIndices::reserve(std::size_t more) {
   const std::size_t needed = size + more + 2 * Lanes::count();
   if (needed <= j.size()) return;
-  i.resize(needed + needed / 8);
-  j.resize(i.size());
+  resize_closely(i, needed + needed / 16);
+  resize_closely(j, i.size());
 }
 
 void PairIndices::append(std::uint32_t of_i, std::uint32_t of_j) {
@@ -363,8 +356,13 @@ void PairBlocks::sort_by_kind(PairBlock& block, const CellGrid& cells) const {
   kind.resize(block.found.size);
   for (std::size_t n = 0; n < kind.size(); ++n) kind[n] = kind_of(block.found, n, cells, species_);
   thread_local PairGroups sorted;
-  sort_by_group(block.found, kind, kinds, sorted);
-  std::swap(block.found, sorted.pairs);
+  sort_by_group(kind, kinds, sorted);
+  thread_local PairIndices before;
+  before = block.found;
+  for (std::size_t n = 0; n < before.size; ++n) {
+    block.found.i[n] = before.i[sorted.order[n]];
+    block.found.j[n] = before.j[sorted.order[n]];
+  }
   block.kind_end = sorted.end;
 }
 
@@ -384,22 +382,22 @@ void PairBlocks::split_by_kind(const PairIndices& pairs, const CellGrid& cells,
   groups *= kinds;
 }
 
-void PairBlocks::group(PairBlock& block, const CellGrid& cells) {
-  if (block.grouped) return;
-  block.grouped = true;
-  if (single_ && species_ > 1) {  // what was found has been sorted by kind
-    block.groups = by_ids(cells);
-    return;
+GroupedPairs PairBlocks::group(PairBlock& block, const CellGrid& cells) {
+  // What was found has been sorted by kind.
+  if (single_ && species_ > 1) return by_ids(cells);
+  if (!block.grouped) {
+    thread_local std::vector<std::uint32_t> group;
+    auto groups = single_ ? groups_in_order(block.found, used_, group)
+                          : groups_of_few(block.found, used_, group);
+    split_by_kind(block.found, cells, group, groups);
+    sort_by_group(group, groups, block.groups);
+    block.grouped = true;
   }
-  thread_local std::vector<std::uint32_t> group;
-  auto groups = single_ ? groups_in_order(block.found, used_, group)
-                        : groups_of_few(block.found, used_, group);
-  split_by_kind(block.found, cells, group, groups);
-  sort_by_group(block.found, group, groups, block.groups);
+  return {block.found, block.groups};
 }
 
-const PairGroups& PairBlocks::by_ids(const CellGrid& cells) {
-  if (sorted_by_ids_) return by_ids_;
+GroupedPairs PairBlocks::by_ids(const CellGrid& cells) {
+  if (sorted_by_ids_) return {by_ids_, groups_by_ids_};
   sorted_by_ids_ = true;
   const auto& id = cells.id();
   struct Pair {
@@ -414,17 +412,14 @@ const PairGroups& PairBlocks::by_ids(const CellGrid& cells) {
     }
   }
   std::sort(all.begin(), all.end(), [](const Pair& a, const Pair& b) { return a.ids < b.ids; });
-  PairIndices sorted;
-  sorted.reserve(all.size());
-  for (const auto& pair : all) {
-    sorted.i[sorted.size] = pair.i;
-    sorted.j[sorted.size++] = pair.j;
-  }
+  by_ids_.size = 0;
+  by_ids_.reserve(all.size());
+  for (const auto& pair : all) by_ids_.append(pair.i, pair.j);
   std::vector<std::uint32_t> group;
-  auto groups = groups_in_order(sorted, used_, group);
-  split_by_kind(sorted, cells, group, groups);
-  sort_by_group(sorted, group, groups, by_ids_);
-  return by_ids_;
+  auto groups = groups_in_order(by_ids_, used_, group);
+  split_by_kind(by_ids_, cells, group, groups);
+  sort_by_group(group, groups, groups_by_ids_);
+  return {by_ids_, groups_by_ids_};
 }
 
 void PairSearch::find(const State& state, FunctionReference<void(const Found&)> visit) {

@@ -10,6 +10,13 @@
 
 namespace driftless {
 
+/// A vector that grows takes twice the room; of what is kept for every pair that is too much.
+template <class Value>
+void resize_closely(std::vector<Value>& values, std::size_t size) {
+  if (size > values.capacity()) values.reserve(size + size / 16);
+  values.resize(size);
+}
+
 /// Pairs of particles by their numbers in the order of cells; id_i < id_j. Both arrays are readable
 /// to the next multiple of the lanes.
 struct PairIndices {
@@ -23,11 +30,19 @@ struct PairIndices {
   void pad(std::uint32_t of_i, std::uint32_t of_j);
 };
 
-/// Pairs in groups that may be treated at once, as no particle is twice in a group; a group stands
+/// Groups of pairs that may be treated at once, as no particle is twice in a group; a group stands
 /// for a place in the order of a sweep. The kind of group g is g modulo the number of kinds.
 struct PairGroups {
-  PairIndices pairs;
-  std::vector<std::uint32_t> end;  ///< of each group
+  std::vector<std::uint32_t> order;  ///< group after group the places of their pairs in a list
+  std::vector<std::uint32_t> end;    ///< of each group
+
+  std::uint32_t begin_of(std::size_t group) const { return group > 0 ? end[group - 1] : 0; }
+};
+
+/// A list of pairs and their groups; good until pairs are found anew.
+struct GroupedPairs {
+  const PairIndices& pairs;
+  const PairGroups& groups;
 };
 
 /// A part of all pairs, found and visited together.
@@ -68,10 +83,10 @@ class PairBlocks {
 
   /// Puts a block's pairs into groups, once: each pair into the first group that has neither of its
   /// particles; in a single cell so that the order is that of ids. Blocks of one colour at once.
-  void group(PairBlock& block, const CellGrid& cells);
+  GroupedPairs group(PairBlock& block, const CellGrid& cells);
   /// All pairs one after the other in the order of ids (i, then j): a group is of pairs that do not
   /// see each other's results.
-  const PairGroups& by_ids(const CellGrid& cells);
+  GroupedPairs by_ids(const CellGrid& cells);
 
  private:
   void add_blocks(const std::vector<PairBlock::Tile>& tiles, std::size_t per_block);
@@ -87,7 +102,8 @@ class PairBlocks {
   std::vector<PairBlock> blocks_;
   std::vector<std::size_t> colours_, first_;
   std::vector<std::uint64_t> used_;  ///< groups of each particle, a bit each
-  PairGroups by_ids_;
+  PairIndices by_ids_;
+  PairGroups groups_by_ids_;
   bool sorted_by_ids_ = false;
 };
 

@@ -171,21 +171,24 @@ void System::for_each_chunk(
     FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer) {
   summing_ = true;
   threads_.phases(pairs_.colours(), [&](unsigned thread, std::size_t colour, std::size_t task) {
-    for_each_run(passes_[thread], pairs_.block(colour, task), answer);
+    for_each_run(passes_[thread], pairs_.block(colour, task),
+                 [&](PairPass& pass, PairBlock& block, std::size_t first, std::size_t count) {
+                   answer(pass, block, first, count);
+                   pass.add(sums_.data());
+                 });
   });
 }
 
 void System::for_each_run(
     PairPass& pass, PairBlock& block,
-    FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer) {
+    FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> visit) {
   std::size_t first = 0;
   for (std::size_t kind = 0; kind < block.kind_end.size(); ++kind) {
     pass.set_law(fluid_.law(kind / fluid_.species(), kind % fluid_.species()));
     for (const std::size_t end = block.kind_end[kind]; first < end;) {
       const std::size_t count = std::min(pairs_a_chunk, end - first);
       pass.take(fluid_, cells_, block.found, first, count);
-      answer(pass, block, first, count);
-      pass.add(sums_.data());
+      visit(pass, block, first, count);
       first += count;
     }
   }
@@ -244,10 +247,10 @@ void System::forget_sums() {
   summing_ = false;
 }
 
-void System::note_failed(const PairIndices& pairs, std::size_t from, std::size_t to,
+void System::note_failed(const PairPass& pass, std::size_t from, std::size_t to,
                          std::vector<std::uint32_t>& failed) const {
   for (std::size_t pair = from; pair < to; ++pair) {
-    for (const auto particle : {pairs.i[pair], pairs.j[pair]}) {
+    for (const auto particle : {pass.i(pair), pass.j(pair)}) {
       if (particle < size() && motion_[particle].energy <= 0) {
         failed.push_back(cells_.id()[particle]);
       }
@@ -255,23 +258,50 @@ void System::note_failed(const PairIndices& pairs, std::size_t from, std::size_t
   }
 }
 
-void System::sweep_groups(PairPass& pass, const PairGroups& groups, const PassParticles& particles,
-                          const PairKernel& kernel, const Sweep& how,
-                          std::vector<std::uint32_t>& failed) {
+void System::sweep_groups(PairPass& pass, const GroupedPairs& grouped,
+                          const PassParticles& particles, const PairKernel& kernel,
+                          const Sweep& how, std::vector<std::uint32_t>& failed) {
+  const std::size_t pairs = grouped.pairs.size;
+  const std::size_t chunks = (pairs + pairs_a_chunk - 1) / pairs_a_chunk;
+  for (std::size_t n = 0; n < chunks; ++n) {
+    const std::size_t chunk = how.order == SweepOrder::forward ? n : chunks - 1 - n;
+    const std::size_t first = chunk * pairs_a_chunk;
+    sweep_chunk(pass, grouped, first, std::min(pairs_a_chunk, pairs - first), particles, kernel,
+                how, failed);
+  }
+}
+
+// A group may lie in several chunks: its pairs do not see each other's results.
+void System::sweep_chunk(PairPass& pass, const GroupedPairs& grouped, std::size_t first,
+                         std::size_t count, const PassParticles& particles,
+                         const PairKernel& kernel, const Sweep& how,
+                         std::vector<std::uint32_t>& failed) {
+  const PairGroups& groups = grouped.groups;
   const std::size_t species = fluid_.species(), kinds = species * species;
+  const auto group_of = [&](std::size_t pair) {
+    return static_cast<std::size_t>(std::upper_bound(groups.end.begin(), groups.end.end(), pair) -
+                                    groups.end.begin());
+  };
+  const std::size_t first_group = group_of(first), end_group = group_of(first + count - 1) + 1;
+  // Within the chunk.
+  const auto begin_of = [&](std::size_t g) {
+    return std::max<std::size_t>(groups.begin_of(g), first) - first;
+  };
+  const auto end_of = [&](std::size_t g) {
+    return std::min<std::size_t>(groups.end[g], first + count) - first;
+  };
   const auto set_law = [&](std::size_t g) {
     const std::size_t kind = g % kinds;
     pass.set_law(fluid_.law(kind / species, kind % species));
   };
-  const auto begin = [&](std::size_t g) { return g > 0 ? groups.end[g - 1] : 0; };
-  pass.take(fluid_, cells_, groups.pairs, 0, groups.pairs.size);
+  pass.take(fluid_, cells_, grouped, first, count);
   if (kinds == 1) {
     set_law(0);
-    pass.geometry(0, groups.pairs.size);
+    pass.geometry(0, count);
   }
-  for (std::size_t g = 0; kinds > 1 && g < groups.end.size(); ++g) {
+  for (std::size_t g = first_group; kinds > 1 && g < end_group; ++g) {
     set_law(g);
-    pass.geometry(begin(g), groups.end[g]);
+    pass.geometry(begin_of(g), end_of(g));
   }
   pass.draw_normals(noise_, how.stage);
   if (how.uniforms) {
@@ -279,16 +309,16 @@ void System::sweep_groups(PairPass& pass, const PairGroups& groups, const PassPa
   } else {
     pass.draw_no_uniforms();
   }
-  for (std::size_t n = 0; n < groups.end.size(); ++n) {
-    const std::size_t g = how.order == SweepOrder::forward ? n : groups.end.size() - 1 - n;
-    const std::size_t from = begin(g), to = groups.end[g];
+  for (std::size_t n = first_group; n < end_group; ++n) {
+    const std::size_t g = how.order == SweepOrder::forward ? n : end_group - 1 - (n - first_group);
+    const std::size_t from = begin_of(g), to = end_of(g);
     set_law(g);
     pass.motion(particles, from, to);
     pass.run(kernel, from, to);
     // Frozen energies are those at the start for every pair: only the end counts.
     if (pass.apply(particles, from, to) || how.energies == SweepEnergies::frozen) continue;
     // A later pair could lift an energy above zero again: a fault in passing is a fault.
-    note_failed(groups.pairs, from, to, failed);
+    note_failed(pass, from, to, failed);
   }
 }
 
@@ -304,11 +334,11 @@ void System::sweep_pairs(const PassParticles& particles, const PairKernel& kerne
   if (reverse) std::reverse(tasks.begin(), tasks.end());
   threads_.phases(tasks, [&](unsigned thread, std::size_t phase, std::size_t task) {
     PairBlock& block = pairs_.block(reverse ? tasks.size() - 1 - phase : phase, task);
-    {
+    const auto grouped = [&] {
       const PassClock clock(passes_[thread].part(&PassSeconds::search));
-      pairs_.group(block, cells_);
-    }
-    sweep_groups(passes_[thread], block.groups, particles, kernel, how, failed[thread]);
+      return pairs_.group(block, cells_);
+    };
+    sweep_groups(passes_[thread], grouped(), particles, kernel, how, failed[thread]);
   });
 }
 
@@ -339,7 +369,7 @@ void System::sweep_contacts(const PassParticles& particles, const PairKernel& ke
       pass.run(kernel, 0, count);
       if (pass.apply_contacts(particles, 0, count)) continue;
       if (how.energies == SweepEnergies::frozen) continue;
-      note_failed(group.contacts, first, first + count, failed[thread]);
+      note_failed(pass, 0, count, failed[thread]);
     }
   });
   for (std::size_t number = 0; number < BoundaryContacts::numbers; ++number) {
@@ -384,24 +414,24 @@ void System::sweep(const PairKernel& kernel, const Sweep& how) {
 
 void System::for_each_pair(FunctionReference<void(const Geometry&)> visit) {
   find_pairs();
+  for (auto& block : pairs_.all()) {
+    for_each_run(passes_[0], block,
+                 [&](PairPass& pass, PairBlock&, std::size_t, std::size_t count) {
+                   pass.geometry(0, count);
+                   visit_pairs(pass, count, visit);
+                 });
+  }
+}
+
+void System::visit_pairs(const PairPass& pass, std::size_t count,
+                         FunctionReference<void(const Geometry&)> visit) const {
   const auto& place = cells_.place();
-  for (const auto& block : pairs_.all()) {
-    PairPass& pass = passes_[0];
-    pass.take(fluid_, cells_, block.found, 0, block.found.size);
-    std::size_t n = 0;
-    for (std::size_t kind = 0; kind < block.kind_end.size(); ++kind) {
-      const PairLaw& law = fluid_.law(kind / fluid_.species(), kind % fluid_.species());
-      pass.set_law(law);
-      pass.geometry(n, block.kind_end[kind]);
-      const PairArrays& pair = pass.arrays();
-      for (; n < block.kind_end[kind]; ++n) {
-        const bool has_direction = pair.e_x[n] != 0 || pair.e_y[n] != 0 || pair.e_z[n] != 0;
-        if (pair.r[n] >= fluid_.range() || !has_direction) continue;
-        visit({place[block.found.i[n]], place[block.found.j[n]],
-               Vector(pair.e_x[n], pair.e_y[n], pair.e_z[n]), pair.r[n], pair.w_friction[n],
-               pair.w_heat[n], &law});
-      }
-    }
+  const PairArrays& pair = pass.arrays();
+  for (std::size_t n = 0; n < count; ++n) {
+    const bool has_direction = pair.e_x[n] != 0 || pair.e_y[n] != 0 || pair.e_z[n] != 0;
+    if (pair.r[n] >= fluid_.range() || !has_direction) continue;
+    visit({place[pass.i(n)], place[pass.j(n)], Vector(pair.e_x[n], pair.e_y[n], pair.e_z[n]),
+           pair.r[n], pair.w_friction[n], pair.w_heat[n], pair.law});
   }
 }
 

@@ -151,11 +151,14 @@ class System {
   void sweep(const PairKernel& kernel, const Sweep& how);
   void sweep_pairs(const PassParticles& particles, const PairKernel& kernel, const Sweep& how,
                    std::vector<std::vector<std::uint32_t>>& failed);
-  void sweep_groups(PairPass& pass, const PairGroups& groups, const PassParticles& particles,
+  void sweep_groups(PairPass& pass, const GroupedPairs& grouped, const PassParticles& particles,
                     const PairKernel& kernel, const Sweep& how, std::vector<std::uint32_t>& failed);
+  void sweep_chunk(PairPass& pass, const GroupedPairs& grouped, std::size_t first,
+                   std::size_t count, const PassParticles& particles, const PairKernel& kernel,
+                   const Sweep& how, std::vector<std::uint32_t>& failed);
   void sweep_contacts(const PassParticles& particles, const PairKernel& kernel, const Sweep& how,
                       std::vector<std::vector<std::uint32_t>>& failed);
-  void note_failed(const PairIndices& pairs, std::size_t from, std::size_t to,
+  void note_failed(const PairPass& pass, std::size_t from, std::size_t to,
                    std::vector<std::uint32_t>& failed) const;
   /// Makes cells, blocks and memory for as many particles and threads as there are.
   void cut_cells();
@@ -164,9 +167,12 @@ class System {
   /// a block's pairs.
   void for_each_chunk(
       FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer);
-  void for_each_run(
-      PairPass& pass, PairBlock& block,
-      FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer);
+  /// visit(pass, block, first, count) when the pass has taken a part of a block's pairs, of one
+  /// kind and no more than stay in the cache.
+  void for_each_run(PairPass& pass, PairBlock& block,
+                    FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> visit);
+  void visit_pairs(const PairPass& pass, std::size_t count,
+                   FunctionReference<void(const Geometry&)> visit) const;
   /// The same for contacts with boundaries: answer(pass, boundary, count).
   void for_each_contact_chunk(FunctionReference<void(PairPass&, std::size_t, std::size_t)> answer);
   /// Leaves nothing behind of a visit that a kernel has broken off.
