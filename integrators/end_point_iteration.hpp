@@ -22,14 +22,14 @@ class EndPointRound {
     system.count_solver_iteration();
     system.accumulate(
         trial_, [&](const auto& start, const auto& end) { return Transfer{momentum(start, end)}; },
-        exchange_);
+        exchange_, {}, Rounds::several);
     take_momenta(system, exchange_, trial_);
     system.accumulate(
         trial_,
         [&](const auto& start, const auto& end) {
           return energy(start, end, momentum(start, end));
         },
-        exchange_);
+        exchange_, {}, Rounds::several);
     take_surroundings_energy(system, exchange_, trial_);
   }
 
@@ -61,9 +61,9 @@ class EndPointIteration {
       round_.evaluate(system, momentum, energy);
       take_energies(system, tolerance);
       if (moving_.empty() || is_explicit) {
-        start_velocity_ = system.motion().velocity;
-        system.set_motion(round_.trial());
-        system.move_along(start_velocity_, dt);
+        Motion& start = round_.trial();
+        system.swap_motion(start);
+        system.move_along(start.velocity, dt);
         return;
       }
     }
@@ -90,7 +90,6 @@ class EndPointIteration {
   }
 
   EndPointRound round_;
-  std::vector<Vector> start_velocity_;
   std::vector<std::uint32_t> moving_;  ///< ids that have not converged
 };
 

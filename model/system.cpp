@@ -124,16 +124,16 @@ bool System::has_kept_normals(const PairBlock& block, Stage stage) const {
          block.normals_step == noise_.step() && block.normals_stage == stage.number;
 }
 
-void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total,
-                        Stage stage) {
+void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total, Stage stage,
+                        Rounds rounds) {
   find_pairs();
   gather_motion(state_, motion_);
   if (trial) gather_motion(*trial, trial_);
   const PassParticles particles{motion_.data(), trial_.data(), nullptr, nullptr};
-  const bool kept =
-      trial && std::all_of(pairs_.all().begin(), pairs_.all().end(), [&](auto& block) {
-        return block.found.size == 0 || has_kept_normals(block, stage);
-      });
+  const bool kept = rounds == Rounds::several &&
+                    std::all_of(pairs_.all().begin(), pairs_.all().end(), [&](auto& block) {
+                      return block.found.size == 0 || has_kept_normals(block, stage);
+                    });
   for_each_chunk([&](PairPass& pass, PairBlock& block, std::size_t first, std::size_t count) {
     pass.geometry(0, count);
     const std::size_t pairs = block.found.size;
@@ -143,9 +143,8 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
       pass.draw_normals(noise_, stage);
     }
     pass.draw_no_uniforms();
-    if (trial && !kept) {
-      // An implicit method will come again.
-      block.normals.resize(2 * pairs);
+    if (rounds == Rounds::several && !kept) {
+      resize_closely(block.normals, 2 * pairs);
       block.normals_step = noise_.step();
       block.normals_stage = stage.number;
       pass.keep_normals(block.normals.data() + first, pairs);
@@ -471,6 +470,12 @@ void System::set_motion(const Motion& motion) {
   state_.surroundings = motion.surroundings;
   drop_if_isothermal(state_.internal_energy);
   ++energies_version_;
+  check();
+}
+
+void System::swap_motion(Motion& motion) {
+  std::swap(static_cast<Motion&>(state_), motion);
+  drop_if_isothermal(state_.internal_energy);
   check();
 }
 

@@ -75,8 +75,9 @@ class System {
   /// The same with a trial end of the step: kernel(const Pair<V>& start, const TrialPair<V>& end),
   /// both at the present positions and with the same noise. For implicit methods.
   template <class Kernel>
-  void accumulate(const Motion& trial, const Kernel& kernel, Exchange& total, Stage stage = {}) {
-    accumulate(PairKernel::of_trial(kernel), &trial, total, stage);
+  void accumulate(const Motion& trial, const Kernel& kernel, Exchange& total, Stage stage = {},
+                  Rounds rounds = Rounds::one) {
+    accumulate(PairKernel::of_trial(kernel), &trial, total, stage, rounds);
   }
 
   /// Pair after pair in the given order, each seeing the results of the ones before it:
@@ -94,6 +95,8 @@ class System {
   void give_surroundings(double duration);
   /// Replaces velocities and internal energies. Throws StepFailure.
   void set_motion(const Motion& motion);
+  /// The same, and hands out those that were there. Throws StepFailure.
+  void swap_motion(Motion& motion);
   /// change(place, velocity, internal_energy) for every particle, on any thread. Throws
   /// StepFailure.
   template <class Change>
@@ -147,7 +150,8 @@ class System {
   void set_state(State state);
 
  private:
-  void accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total, Stage stage);
+  void accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total, Stage stage,
+                  Rounds rounds = Rounds::one);
   void sweep(const PairKernel& kernel, const Sweep& how);
   void sweep_pairs(const PassParticles& particles, const PairKernel& kernel, const Sweep& how,
                    std::vector<std::vector<std::uint32_t>>& failed);
