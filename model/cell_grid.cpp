@@ -37,9 +37,7 @@ void CellGrid::sort(const State& state, const Threads& threads) {
   // Vectors of single precision are read beyond the end.
   const std::size_t padded = state.size() + 2 * Lanes::count();
   cell_.resize(state.size());
-  entry_.resize(state.size());
-  place_.resize(state.size());
-  id_.resize(state.size());
+  entries_.resize(state.size());
   species_.resize(state.species.size());
   position_.resize(padded);
   for (auto& values : rough_) values.resize(padded);
@@ -68,13 +66,14 @@ void CellGrid::sort(const State& state, const Threads& threads) {
   threads.phases(tasks, [&](unsigned, std::size_t, std::size_t n) {
     std::uint32_t* const next = next_.data() + n * cells;
     for (std::size_t i = share(n); i < share(n + 1); ++i) {
-      entry_[next[cell_[i]]++] = (std::uint64_t{state.id[i]} << 32) | i;
+      entries_[next[cell_[i]]++] = {static_cast<std::uint32_t>(i), state.id[i]};
     }
   });
+  const auto by_id = [](const Entry& a, const Entry& b) { return a.id < b.id; };
   threads.ranges(cells, [&](std::size_t first, std::size_t last) {
     for (std::size_t c = first; c < last; ++c) {
-      const auto from = entry_.begin() + begin_[c], to = entry_.begin() + begin_[c + 1];
-      if (!std::is_sorted(from, to)) std::sort(from, to);
+      const auto from = entries_.begin() + begin_[c], to = entries_.begin() + begin_[c + 1];
+      if (!std::is_sorted(from, to, by_id)) std::sort(from, to, by_id);
     }
     gather(state, begin_[first], begin_[last]);
   });
@@ -92,9 +91,7 @@ void CellGrid::assign(const State& state, std::size_t begin, std::size_t end) {
 
 void CellGrid::gather(const State& state, std::size_t begin, std::size_t end) {
   for (std::size_t n = begin; n < end; ++n) {
-    const auto place = static_cast<std::uint32_t>(entry_[n]);
-    place_[n] = place;
-    id_[n] = static_cast<std::uint32_t>(entry_[n] >> 32);
+    const std::uint32_t place = entries_[n].place;
     if (!species_.empty()) species_[n] = state.species[place];
     const Vector& position = state.position[place];
     position_[n] = {position[0], position[1], position[2], 0};

@@ -47,8 +47,12 @@ class CellGrid {
   void sort(const State& state, const Threads& threads);
 
   /// The particles in the order of cells; single precision carries `margin` more than the range.
-  const std::vector<std::uint32_t>& place() const { return place_; }  ///< in the state's storage
-  const std::vector<std::uint32_t>& id() const { return id_; }
+  struct Entry {
+    std::uint32_t place, id;  ///< place in the state's storage
+  };
+  const std::vector<Entry>& entries() const { return entries_; }
+  std::uint32_t place(std::size_t n) const { return entries_[n].place; }
+  std::uint32_t id(std::size_t n) const { return entries_[n].id; }
   std::uint8_t species(std::size_t n) const { return species_.empty() ? 0 : species_[n]; }
   const std::vector<Quadruple>& position() const { return position_; }
   const std::array<std::vector<float>, 3>& rough_position() const { return rough_; }
@@ -64,9 +68,8 @@ class CellGrid {
   bool single_ = false;
   Eigen::Vector3i count_;
   std::vector<std::uint32_t> begin_, next_;
-  std::vector<std::uint32_t> cell_;   ///< of each place in storage
-  std::vector<std::uint64_t> entry_;  ///< id and place in storage, sorted
-  std::vector<std::uint32_t> place_, id_;
+  std::vector<std::uint32_t> cell_;  ///< of each place in storage
+  std::vector<Entry> entries_;
   std::vector<std::uint8_t> species_;  ///< empty: all 0
   std::vector<Quadruple> position_;
   std::array<std::vector<float>, 3> rough_;

@@ -162,14 +162,12 @@ void PairPass::contact_geometry(std::size_t boundary) {
 }
 
 void PairPass::look_up_ids() {
-  const auto& id = cells_->id();
-  for (std::size_t n = 0; n < padded(count_); ++n) id_i_[n] = id[i_[n]];
-  for (std::size_t n = 0; n < padded(count_); ++n) id_j_[n] = id[j_[n]];
+  for (std::size_t n = 0; n < padded(count_); ++n) id_i_[n] = cells_->id(i_[n]);
+  for (std::size_t n = 0; n < padded(count_); ++n) id_j_[n] = cells_->id(j_[n]);
 }
 
 void PairPass::look_up_contact_ids(std::uint32_t boundary_id) {
-  const auto& id = cells_->id();
-  for (std::size_t n = 0; n < padded(count_); ++n) id_i_[n] = id[i_[n]];
+  for (std::size_t n = 0; n < padded(count_); ++n) id_i_[n] = cells_->id(i_[n]);
   std::fill_n(id_j_.begin(), padded(count_), boundary_id);
 }
 

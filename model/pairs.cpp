@@ -172,19 +172,21 @@ void search_all(PairIndices& all, const CellGrid& cells, float limit) {
 }
 
 /// Makes i the one of the smaller id.
-void order_by_ids(PairIndices& found, const std::vector<std::uint32_t>& ids) {
+void order_by_ids(const PairIndices& found, PairIndices& ordered, const CellGrid& cells) {
   const Indices indices;
   const hn::RebindToSigned<Indices> numbers;
-  const auto* const base = ids.data();
+  static_assert(sizeof(CellGrid::Entry) == 2 * sizeof(std::uint32_t));
+  const std::uint32_t* const base = &cells.entries().data()->id;
   const auto id_of = [&](auto particle) {
-    return hn::BitCast(indices, hn::GatherIndex(indices, base, hn::BitCast(numbers, particle)));
+    const auto twice = hn::BitCast(numbers, hn::Add(particle, particle));
+    return hn::BitCast(indices, hn::GatherIndex(indices, base, twice));
   };
   for (std::size_t n = 0; n < found.size; n += hn::Lanes(indices)) {
     const auto i = hn::LoadU(indices, found.i.data() + n),
                j = hn::LoadU(indices, found.j.data() + n);
     const auto swap = hn::Gt(id_of(i), id_of(j));
-    hn::StoreU(hn::IfThenElse(swap, j, i), indices, found.i.data() + n);
-    hn::StoreU(hn::IfThenElse(swap, i, j), indices, found.j.data() + n);
+    hn::StoreU(hn::IfThenElse(swap, j, i), indices, ordered.i.data() + n);
+    hn::StoreU(hn::IfThenElse(swap, i, j), indices, ordered.j.data() + n);
   }
 }
 
@@ -257,8 +259,14 @@ constexpr std::size_t particles_a_block = 500;  // so that a block's arrays stay
 void PairIndices::reserve(std::size_t more) {
   const std::size_t needed = size + more + 2 * Lanes::count();
   if (needed <= j.size()) return;
-  resize_closely(i, needed + needed / 16);
-  resize_closely(j, i.size());
+  i.resize(needed);
+  j.resize(needed);
+}
+
+void PairIndices::resize(std::size_t pairs) {
+  resize_closely(i, pairs + 2 * Lanes::count());
+  resize_closely(j, pairs + 2 * Lanes::count());
+  size = pairs;
 }
 
 void PairIndices::append(std::uint32_t of_i, std::uint32_t of_j) {
@@ -320,30 +328,41 @@ void PairBlocks::add_blocks(const std::vector<PairBlock::Tile>& tiles, std::size
 }
 
 void PairBlocks::find(const CellGrid& cells, const Threads& threads) {
-  const double reach = range_ + cells.rough_margin();
-  const auto limit = range_ > 0 ? static_cast<float>(reach * reach) : 0.0F;
   const std::size_t blocks[] = {blocks_.size()};
   threads.phases(blocks, [&](unsigned, std::size_t, std::size_t n) {
     PairBlock& block = blocks_[n];
-    block.found.size = 0;
     block.grouped = false;
     block.normals.clear();
-    for (const auto& [from, to] : block.tiles) {
-      if (limit == 0) break;
-      if (cells.single()) search_all(block.found, cells, limit);
-      if (cells.single()) break;
-      for (int z = from[2]; z < to[2]; ++z) {
-        for (int y = from[1]; y < to[1]; ++y) {
-          for (int x = from[0]; x < to[0]; ++x) search_cell(block.found, cells, x, y, z, limit);
-        }
-      }
+    // Found in a place with room for all candidates, kept in one as large as what is found.
+    thread_local PairIndices found;
+    search(found, block, cells);
+    pad(found);
+    block.found.resize(found.size);
+    if (cells.single()) {
+      std::copy_n(found.i.begin(), found.size, block.found.i.begin());
+      std::copy_n(found.j.begin(), found.size, block.found.j.begin());
+    } else {
+      order_by_ids(found, block.found, cells);
     }
     pad(block.found);
-    if (!cells.single()) order_by_ids(block.found, cells.id());
     sort_by_kind(block, cells);
   });
-  used_.resize(cells.particles());
   sorted_by_ids_ = false;
+}
+
+void PairBlocks::search(PairIndices& found, const PairBlock& block, const CellGrid& cells) const {
+  found.size = 0;
+  const double reach = range_ + cells.rough_margin();
+  const auto limit = static_cast<float>(reach * reach);
+  if (range_ == 0) return;
+  if (cells.single()) return search_all(found, cells, limit);
+  for (const auto& [from, to] : block.tiles) {
+    for (int z = from[2]; z < to[2]; ++z) {
+      for (int y = from[1]; y < to[1]; ++y) {
+        for (int x = from[0]; x < to[0]; ++x) search_cell(found, cells, x, y, z, limit);
+      }
+    }
+  }
 }
 
 void PairBlocks::sort_by_kind(PairBlock& block, const CellGrid& cells) const {
@@ -399,7 +418,7 @@ GroupedPairs PairBlocks::group(PairBlock& block, const CellGrid& cells) {
 GroupedPairs PairBlocks::by_ids(const CellGrid& cells) {
   if (sorted_by_ids_) return {by_ids_, groups_by_ids_};
   sorted_by_ids_ = true;
-  const auto& id = cells.id();
+  prepare_groups(cells);
   struct Pair {
     std::uint64_t ids;
     std::uint32_t i, j;
@@ -408,7 +427,7 @@ GroupedPairs PairBlocks::by_ids(const CellGrid& cells) {
   for (const auto& block : blocks_) {
     for (std::size_t n = 0; n < block.found.size; ++n) {
       const auto i = block.found.i[n], j = block.found.j[n];
-      all.push_back({std::uint64_t{id[i]} << 32 | id[j], i, j});
+      all.push_back({std::uint64_t{cells.id(i)} << 32 | cells.id(j), i, j});
     }
   }
   std::sort(all.begin(), all.end(), [](const Pair& a, const Pair& b) { return a.ids < b.ids; });
@@ -428,7 +447,7 @@ void PairSearch::find(const State& state, FunctionReference<void(const Found&)> 
   blocks_.find(cells_, one);
   for (const auto& block : blocks_.all()) {
     for (std::size_t n = 0; n < block.found.size; ++n) {
-      const auto i = cells_.place()[block.found.i[n]], j = cells_.place()[block.found.j[n]];
+      const auto i = cells_.place(block.found.i[n]), j = cells_.place(block.found.j[n]);
       const Vector difference = cells_.box().minimum_image(state.position[i] - state.position[j]);
       const double squared = difference.squaredNorm();
       if (squared < range_ * range_) visit({i, j, difference, squared});

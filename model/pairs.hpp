@@ -25,6 +25,8 @@ struct PairIndices {
 
   /// Makes room for `more` pairs beyond the present ones.
   void reserve(std::size_t more);
+  /// Makes room for so many pairs and no more, and forgets the present ones.
+  void resize(std::size_t pairs);
   void append(std::uint32_t of_i, std::uint32_t of_j);
   /// Fills what is readable beyond the last pair.
   void pad(std::uint32_t of_i, std::uint32_t of_j);
@@ -81,6 +83,8 @@ class PairBlocks {
   PairBlock& block(std::size_t colour, std::size_t n) { return blocks_[first_[colour] + n]; }
   std::vector<PairBlock>& all() { return blocks_; }
 
+  /// Makes what group() needs; before the first after find().
+  void prepare_groups(const CellGrid& cells) { used_.resize(cells.particles()); }
   /// Puts a block's pairs into groups, once: each pair into the first group that has neither of its
   /// particles; in a single cell so that the order is that of ids. Blocks of one colour at once.
   GroupedPairs group(PairBlock& block, const CellGrid& cells);
@@ -91,6 +95,7 @@ class PairBlocks {
  private:
   void add_blocks(const std::vector<PairBlock::Tile>& tiles, std::size_t per_block);
 
+  void search(PairIndices& found, const PairBlock& block, const CellGrid& cells) const;
   void sort_by_kind(PairBlock& block, const CellGrid& cells) const;
   /// Makes of each group one for each kind.
   void split_by_kind(const PairIndices& pairs, const CellGrid& cells,

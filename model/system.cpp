@@ -99,13 +99,13 @@ void System::gather_motion(const Motion& motion, std::vector<Quadruple>& gathere
   gathered.resize(size() + BoundaryContacts::numbers);
   std::fill(gathered.begin() + static_cast<std::ptrdiff_t>(size()), gathered.end(),
             boundary_motion);
-  const auto& place = cells_.place();
   const bool isothermal = fluid_.isothermal();
   const double bath = fluid_.bath_energy();
   for_each_particle([&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      const Vector& v = motion.velocity[place[n]];
-      gathered[n] = {v[0], v[1], v[2], isothermal ? bath : motion.internal_energy[place[n]]};
+      const std::size_t place = cells_.place(n);
+      const Vector& v = motion.velocity[place];
+      gathered[n] = {v[0], v[1], v[2], isothermal ? bath : motion.internal_energy[place]};
     }
   });
 }
@@ -214,11 +214,11 @@ void System::scatter_sums(std::vector<Vector>& momentum, std::vector<double>& en
                           Surroundings& surroundings) {
   momentum.resize(size());
   energy.resize(size());
-  const auto& place = cells_.place();
   for_each_particle([&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      momentum[place[n]] = Vector(sums_[n].x, sums_[n].y, sums_[n].z);
-      energy[place[n]] = sums_[n].energy;
+      const std::size_t place = cells_.place(n);
+      momentum[place] = Vector(sums_[n].x, sums_[n].y, sums_[n].z);
+      energy[place] = sums_[n].energy;
       sums_[n] = {};  // ready for the next
     }
   });
@@ -251,7 +251,7 @@ void System::note_failed(const PairPass& pass, std::size_t from, std::size_t to,
   for (std::size_t pair = from; pair < to; ++pair) {
     for (const auto particle : {pass.i(pair), pass.j(pair)}) {
       if (particle < size() && motion_[particle].energy <= 0) {
-        failed.push_back(cells_.id()[particle]);
+        failed.push_back(cells_.id(particle));
       }
     }
   }
@@ -327,6 +327,7 @@ void System::sweep_pairs(const PassParticles& particles, const PairKernel& kerne
     sweep_groups(passes_[0], pairs_.by_ids(cells_), particles, kernel, how, failed[0]);
     return;
   }
+  pairs_.prepare_groups(cells_);
   const auto colours = pairs_.colours();
   std::vector<std::size_t> tasks(colours.begin(), colours.end());
   const bool reverse = how.order == SweepOrder::reverse;
@@ -392,15 +393,15 @@ void System::sweep(const PairKernel& kernel, const Sweep& how) {
   if (how.order == SweepOrder::reverse) sweep_contacts(particles, kernel, how, failed);
   sweep_pairs(particles, kernel, how, failed);
   if (how.order == SweepOrder::forward) sweep_contacts(particles, kernel, how, failed);
-  const auto& place = cells_.place();
   std::atomic<bool> sound = true;
   ++energies_version_;
   for_each_particle([&](std::size_t begin, std::size_t end) {
     bool all = true;
     for (std::size_t n = begin; n < end; ++n) {
-      state_.velocity[place[n]] = Vector(motion_[n].x, motion_[n].y, motion_[n].z);
-      if (!fluid_.isothermal()) state_.internal_energy[place[n]] = motion_[n].energy;
-      all = all & is_sound(place[n]);
+      const std::size_t place = cells_.place(n);
+      state_.velocity[place] = Vector(motion_[n].x, motion_[n].y, motion_[n].z);
+      if (!fluid_.isothermal()) state_.internal_energy[place] = motion_[n].energy;
+      all = all & is_sound(place);
     }
     if (!all) sound = false;
   });
@@ -424,13 +425,13 @@ void System::for_each_pair(FunctionReference<void(const Geometry&)> visit) {
 
 void System::visit_pairs(const PairPass& pass, std::size_t count,
                          FunctionReference<void(const Geometry&)> visit) const {
-  const auto& place = cells_.place();
   const PairArrays& pair = pass.arrays();
   for (std::size_t n = 0; n < count; ++n) {
     const bool has_direction = pair.e_x[n] != 0 || pair.e_y[n] != 0 || pair.e_z[n] != 0;
     if (pair.r[n] >= fluid_.range() || !has_direction) continue;
-    visit({place[pass.i(n)], place[pass.j(n)], Vector(pair.e_x[n], pair.e_y[n], pair.e_z[n]),
-           pair.r[n], pair.w_friction[n], pair.w_heat[n], pair.law});
+    visit({cells_.place(pass.i(n)), cells_.place(pass.j(n)),
+           Vector(pair.e_x[n], pair.e_y[n], pair.e_z[n]), pair.r[n], pair.w_friction[n],
+           pair.w_heat[n], pair.law});
   }
 }
 

@@ -220,6 +220,7 @@ struct Dense {
     state = random_state(uniform, Box{lengths}, particles);
     cells.sort(state, Threads());
     blocks.find(cells, Threads());
+    blocks.prepare_groups(cells);
     for (auto& block : blocks.all()) grouped.push_back(in_order(blocks.group(block, cells)));
   }
 
@@ -232,7 +233,7 @@ struct Dense {
   void add(const PairIndices& pairs,
            std::vector<std::pair<std::uint32_t, std::uint32_t>>& all) const {
     for (std::size_t n = 0; n < pairs.size; ++n) {
-      all.emplace_back(cells.id()[pairs.i[n]], cells.id()[pairs.j[n]]);
+      all.emplace_back(cells.id(pairs.i[n]), cells.id(pairs.j[n]));
     }
   }
 };
@@ -322,7 +323,7 @@ bool ascends(const InOrder& groups, const CellGrid& cells) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> last(cells.particles(), {0, 0});
   for (std::size_t n = 0; n < groups.pairs.size; ++n) {
     const auto i = groups.pairs.i[n], j = groups.pairs.j[n];
-    const std::pair ids(cells.id()[i], cells.id()[j]);
+    const std::pair ids(cells.id(i), cells.id(j));
     if (last[i] > ids || last[j] > ids) return false;
     last[i] = last[j] = ids;
   }
