@@ -21,14 +21,29 @@ CellGrid::CellGrid(const Box& box, double range, std::size_t particles)
             << " is below twice the range of the interaction " << range;
     throw std::invalid_argument(message.str());
   }
-  // No more than a few cells per particle, however dilute the system.
-  const double most = std::max(3.0, 2 * std::cbrt(static_cast<double>(particles)));
+  cut(range);
+}
+
+void CellGrid::cut(double range) {
+  // Of two cells each would be on both sides of the other.
+  Eigen::Array3d fit = Eigen::Array3d::Ones();
   for (int axis = 0; axis < 3; ++axis) {
-    const double fit = range > 0 ? lengths_[axis] / range : 1.0;
-    count_[axis] = static_cast<int>(std::min(fit, most));
+    const double ranges = range > 0 ? lengths_[axis] / range : 1.0;
+    if (ranges >= 3) fit[axis] = ranges;
   }
-  // Below three cells a neighbour would be met twice; below four no two groups of cells are apart.
-  single_ = count_.minCoeff() < 3 || count_.maxCoeff() < 4;
+  // No more than a few cells per particle, however dilute the system; what short sides leave of
+  // them the long ones may have.
+  const double most = std::max(3.0, 2 * std::cbrt(static_cast<double>(particles_)));
+  double spare = 1;
+  int long_sides = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (fit[axis] < most) spare *= most / fit[axis];
+    if (fit[axis] >= most) ++long_sides;
+  }
+  const double most_of_long = most * std::pow(spare, 1.0 / std::max(1, long_sides));
+  count_ = fit.min(most_of_long).cast<int>();
+  // Below four cells no two groups of cells are apart.
+  single_ = count_.maxCoeff() < 4;
   if (single_) count_ = Eigen::Vector3i::Ones();
 }
 

@@ -21,8 +21,8 @@ struct alignas(32) Quadruple {
 };
 
 /// A box cut into cells of at least the range of the interaction, and its particles in their order:
-/// cell after cell, by ids within a cell. A box shorter than four cells is one cell, whose
-/// particles are in the order of ids.
+/// cell after cell, by ids within a cell. A box of less than four ranges along every side is one
+/// cell, whose particles are in the order of ids.
 class CellGrid {
  public:
   /// Throws std::invalid_argument if the box is shorter than twice the range.
@@ -30,6 +30,9 @@ class CellGrid {
 
   bool single() const { return single_; }
   const Eigen::Vector3i& count() const { return count_; }
+  /// Whether particles see each other along an axis at any distance, by the nearest image, as it
+  /// has one cell: beside it on both sides would be itself.
+  bool thin(int axis) const { return count_[axis] == 1; }
   const Box& box() const { return box_; }
   /// The box's sides, longer by the range where walls stand: images are then never near.
   const Vector& lengths() const { return lengths_; }
@@ -59,6 +62,7 @@ class CellGrid {
   double rough_margin() const { return 4e-7 * lengths_.maxCoeff(); }
 
  private:
+  void cut(double range);
   void assign(const State& state, std::size_t begin, std::size_t end);
   void gather(const State& state, std::size_t begin, std::size_t end);
 

@@ -58,7 +58,7 @@ enum class SweepOrder { forward, reverse };
 
 /// Which order that is: one that pairs far apart may share, given by where particles are and by
 /// their ids; or ascending ids (i, then j), which takes longer. In a small box, of less than four
-/// ranges along every side or less than three along one, the first is the second.
+/// ranges along every side, the first is the second.
 enum class SweepSequence { coloured, by_ids };
 
 /// What a pair sees of the internal energies in a sweep: the results of the pairs before it, or

@@ -22,15 +22,16 @@ struct Segment {
 };
 
 /// The segments that meet every pair of cells once: a cell itself and the next one in x, then the
-/// four rows ahead in y and z.
+/// four rows ahead in y and z. Along a thin axis there is no other cell.
 class Neighbours {
  public:
   Neighbours(const CellGrid& cells, int x, int y, int z) : cells_(cells), x_(x) {
     add_row(x, y, z);
-    add_row(x - 1, y + 1, z);
-    add_row(x - 1, y - 1, z + 1);
+    if (!cells.thin(1)) add_row(x - 1, y + 1, z);
+    if (cells.thin(2)) return;
+    if (!cells.thin(1)) add_row(x - 1, y - 1, z + 1);
     add_row(x - 1, y, z + 1);
-    add_row(x - 1, y + 1, z + 1);
+    if (!cells.thin(1)) add_row(x - 1, y + 1, z + 1);
   }
   std::span<Segment> segments() { return {segments_, count_}; }
   std::size_t particles() const {
@@ -56,6 +57,7 @@ class Neighbours {
                              {shift_x, shift_y, shift_z}};
     };
     add(std::max(from, 0), std::min(x_ + 1, last) + 1, 0);
+    if (cells_.thin(0)) return;
     if (from < 0) add(last, last + 1, -static_cast<float>(length[0]));
     if (x_ == last) add(0, 1, static_cast<float>(length[0]));
   }
@@ -98,11 +100,24 @@ struct Writer {
   explicit Writer(PairIndices& found) : i(found.i.data()), j(found.j.data()), size(found.size) {}
 };
 
+/// The sides of which differences are brought to the nearest image.
+struct Images {
+  std::array<float, 3> length, inverse;  ///< 0 for the other sides
+
+  explicit Images(const CellGrid& cells) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto n = static_cast<std::size_t>(axis);
+      length[n] = static_cast<float>(cells.lengths()[axis]);
+      inverse[n] = cells.thin(axis) ? 1 / length[n] : 0;
+    }
+  }
+};
+
 /// Writes the pairs of particle i with those candidates that are nearer than the root of `limit` to
-/// a point, its image. There is room for a whole vector of them. `wrap` finds the nearest image of
-/// any distance.
+/// a point, its image. There is room for a whole vector of them. `wrap` finds the nearest image
+/// where there are any.
 template <bool wrap>
-HWY_INLINE void add_near(Writer& found, const CellGrid& cells, std::uint32_t i,
+HWY_INLINE void add_near(Writer& found, const Images& images, std::uint32_t i,
                          const Candidates& candidates, const std::array<float, 3>& point,
                          hn::Mask<Floats> counted, float limit) {
   const Floats floats;
@@ -111,9 +126,8 @@ HWY_INLINE void add_near(Writer& found, const CellGrid& cells, std::uint32_t i,
   for (std::size_t axis = 0; axis < 3; ++axis) {
     auto difference = hn::Sub(candidates.position[axis], hn::Set(floats, point[axis]));
     if constexpr (wrap) {
-      const auto length = static_cast<float>(cells.lengths()[static_cast<Eigen::Index>(axis)]);
-      const auto images = hn::Round(hn::Mul(difference, hn::Set(floats, 1 / length)));
-      difference = hn::NegMulAdd(images, hn::Set(floats, length), difference);
+      const auto sides = hn::Round(hn::Mul(difference, hn::Set(floats, images.inverse[axis])));
+      difference = hn::NegMulAdd(sides, hn::Set(floats, images.length[axis]), difference);
     }
     squared = hn::MulAdd(difference, difference, squared);
   }
@@ -125,6 +139,7 @@ HWY_INLINE void add_near(Writer& found, const CellGrid& cells, std::uint32_t i,
   found.size += hn::CountTrue(indices, near);
 }
 
+template <bool wrap>
 void search_cell(PairIndices& all, const CellGrid& cells, int x, int y, int z, float limit) {
   const auto cell = cells.index(x, y, z);
   const auto begin = cells.begin(cell), end = cells.begin(cell + 1);
@@ -132,6 +147,7 @@ void search_cell(PairIndices& all, const CellGrid& cells, int x, int y, int z, f
   const float* const position[3] = {cells.rough_position()[0].data(),
                                     cells.rough_position()[1].data(),
                                     cells.rough_position()[2].data()};
+  const Images images(cells);
   Neighbours neighbours(cells, x, y, z);
   const auto segments = neighbours.segments();
   all.reserve((end - begin) * neighbours.particles());
@@ -149,7 +165,7 @@ void search_cell(PairIndices& all, const CellGrid& cells, int x, int y, int z, f
           const auto later = hn::Gt(candidates.number, hn::Set(Indices(), i));
           counted = hn::And(counted, hn::RebindMask(Floats(), later));
         }
-        add_near<false>(found, cells, i, candidates, point, counted, limit);
+        add_near<wrap>(found, images, i, candidates, point, counted, limit);
       }
     }
   }
@@ -159,12 +175,13 @@ void search_cell(PairIndices& all, const CellGrid& cells, int x, int y, int z, f
 void search_all(PairIndices& all, const CellGrid& cells, float limit) {
   const auto particles = static_cast<std::uint32_t>(cells.particles());
   const auto& position = cells.rough_position();
+  const Images images(cells);
   for (std::uint32_t i = 0; i < particles; ++i) {
     all.reserve(particles);
     Writer found(all);
     for (auto first = i + 1; first < particles; first += hn::Lanes(Floats())) {
       const Candidates candidates(cells, first, particles);
-      add_near<true>(found, cells, i, candidates, {position[0][i], position[1][i], position[2][i]},
+      add_near<true>(found, images, i, candidates, {position[0][i], position[1][i], position[2][i]},
                      candidates.counted, limit);
     }
     all.size = found.size;
@@ -335,7 +352,7 @@ void PairBlocks::find(const CellGrid& cells, const Threads& threads) {
     block.normals.clear();
     // Found in a place with room for all candidates, kept in one as large as what is found.
     thread_local PairIndices found;
-    search(found, block, cells);
+    search_block(found, block, cells);
     pad(found);
     block.found.resize(found.size);
     if (cells.single()) {
@@ -350,16 +367,19 @@ void PairBlocks::find(const CellGrid& cells, const Threads& threads) {
   sorted_by_ids_ = false;
 }
 
-void PairBlocks::search(PairIndices& found, const PairBlock& block, const CellGrid& cells) const {
+void PairBlocks::search_block(PairIndices& found, const PairBlock& block,
+                              const CellGrid& cells) const {
   found.size = 0;
   const double reach = range_ + cells.rough_margin();
   const auto limit = static_cast<float>(reach * reach);
   if (range_ == 0) return;
   if (cells.single()) return search_all(found, cells, limit);
+  const bool thin = cells.count().minCoeff() == 1;
+  const auto search = thin ? search_cell<true> : search_cell<false>;
   for (const auto& [from, to] : block.tiles) {
     for (int z = from[2]; z < to[2]; ++z) {
       for (int y = from[1]; y < to[1]; ++y) {
-        for (int x = from[0]; x < to[0]; ++x) search_cell(found, cells, x, y, z, limit);
+        for (int x = from[0]; x < to[0]; ++x) search(found, cells, x, y, z, limit);
       }
     }
   }

@@ -95,7 +95,7 @@ class PairBlocks {
  private:
   void add_blocks(const std::vector<PairBlock::Tile>& tiles, std::size_t per_block);
 
-  void search(PairIndices& found, const PairBlock& block, const CellGrid& cells) const;
+  void search_block(PairIndices& found, const PairBlock& block, const CellGrid& cells) const;
   void sort_by_kind(PairBlock& block, const CellGrid& cells) const;
   /// Makes of each group one for each kind.
   void split_by_kind(const PairIndices& pairs, const CellGrid& cells,

@@ -106,6 +106,13 @@ const Scenery sceneries[] = {
     {"three to five ranges a side", {3, 3, 3}, {5, 5, 5}, 250},
     {"a column", {2, 3, 8}, {3, 4, 12}, 300},
     {"a plate", {3, 9, 9}, {4, 12, 12}, 300},
+    {"a column thinner than three ranges", {2, 2, 9}, {3, 3, 30}, 300},
+    {"the same along x", {9, 2, 2}, {30, 3, 3}, 300},
+    {"the same along y", {2, 9, 2}, {3, 30, 3}, 300},
+    {"a plate thinner than three ranges", {5, 5, 2}, {8, 8, 3}, 300},
+    {"the same across x", {2, 5, 5}, {3, 8, 8}, 300},
+    {"the same across y", {4, 2, 3}, {8, 3, 8}, 300},
+    {"a long column", {2, 3, 300}, {3, 4, 1000}, 300},
     {"many cells", {8, 8, 8}, {11, 11, 11}, 500},
     {"far more cells than particles", {40, 40, 40}, {2000, 2000, 2000}, 60},
 };
@@ -181,6 +188,24 @@ TEST(PairSearch, RefusesABoxShorterThanTwiceTheRange) {
   EXPECT_NO_THROW(PairSearch(Box{Vector(5, 2, 5)}, 1, 10));
 }
 
+// The search is linear in the particles as long as its cells are no larger than a few ranges.
+TEST(CellGrid, HasCellsOfTheRangeInAThinBoxToo) {
+  const auto count = [](const Vector& lengths, double density = 3) {
+    const auto particles = static_cast<std::size_t>(density * lengths.prod());
+    return CellGrid(Box{lengths}, 1, particles).count();
+  };
+  EXPECT_EQ(count({2.5, 2.5, 1000}), Eigen::Vector3i(1, 1, 1000));
+  EXPECT_EQ(count({1000, 2.5, 2.5}), Eigen::Vector3i(1000, 1, 1));
+  EXPECT_EQ(count({2.5, 100, 100}), Eigen::Vector3i(1, 100, 100));
+  EXPECT_EQ(count({3, 3, 1000}), Eigen::Vector3i(3, 3, 1000));
+  EXPECT_EQ(count({3.9, 2.9, 3.9}), Eigen::Vector3i(1, 1, 1));
+  EXPECT_EQ(count({30, 30, 30}), Eigen::Vector3i(30, 30, 30));
+  // Dilute: at most eight cells a particle.
+  EXPECT_LE(count({3, 3, 1000}, 0.01).prod(), 8 * 90);
+  EXPECT_LE(count({100, 100, 100}, 0.001).prod(), 8 * 1000);
+  EXPECT_LE(count({2, 1000, 1000}, 1e-4).prod(), 8 * 200);
+}
+
 TEST(PairSearch, FindsNothingWithoutARangeOrWithoutParticles) {
   Uniform uniform(6);
   const Box box{Vector::Constant(1)};
@@ -227,7 +252,7 @@ struct Dense {
   /// The pairs by ids in the order of a sweep: colours, blocks, groups.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> order() const {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> all;
-    for (const auto& block : const_cast<PairBlocks&>(blocks).all()) add(block.groups.pairs, all);
+    for (const auto& block : grouped) add(block.pairs, all);
     return all;
   }
   void add(const PairIndices& pairs,
@@ -251,8 +276,9 @@ bool meets_itself(const InOrder& groups) {
   return false;
 }
 
-const Vector boxes[] = {{3.5, 3.5, 3.5}, {4, 4, 4},    {5.5, 4.2, 7.1},
-                        {9, 3.3, 12.5},  {13, 13, 13}, {15.2, 17, 14.6}};
+const Vector boxes[] = {{3.5, 3.5, 3.5}, {4, 4, 4},         {5.5, 4.2, 7.1},
+                        {9, 3.3, 12.5},  {13, 13, 13},      {15.2, 17, 14.6},
+                        {2.5, 9, 13},    {2.2, 2.9, 600.5}, {60.1, 2, 3.4}};
 
 TEST(PairGroups, HoldEveryPairOnceAndNoParticleTwice) {
   for (const auto& lengths : boxes) {
