@@ -238,6 +238,7 @@ std::vector<MethodRow> bench_methods(const BenchPlan& plan) {
   for (std::size_t n = 0; n < runs.size(); ++n) {
     rows.push_back(method_row(*methods()[n], *runs[n], measured[n]));
   }
+  for (std::size_t n = 0; n < runs.size(); ++n) rows[n].bytes = bytes_per_particle(runs[n]);
   const auto reference = std::find_if(rows.begin(), rows.end(), [](const MethodRow& row) {
     return row.method == "averaged-drift" && row.failure.empty();
   });

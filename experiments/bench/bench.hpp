@@ -66,13 +66,14 @@ std::vector<SceneRow> bench_scenes(const BenchPlan& plan);
 struct MethodRow {
   std::string method, closure, failure;  ///< nothing below means anything after a failure
   std::size_t particles = 0;
-  Spread nanoseconds = {};   ///< per particle and step
-  double pairs = 0;          ///< within the range, per particle
-  double visits = 0;         ///< evaluations of a pair, per pair and step
-  double iterations = 0;     ///< of the implicit solve, per step
-  double numbers = 0;        ///< random numbers, per pair and step
-  double factor = 0;         ///< of the cost of averaged-drift; 0 if that one failed
-  StageSeconds stages = {};  ///< per particle and step
+  Spread nanoseconds = {};           ///< per particle and step
+  double pairs = 0;                  ///< within the range, per particle
+  double visits = 0;                 ///< evaluations of a pair, per pair and step
+  double iterations = 0;             ///< of the implicit solve, per step
+  double numbers = 0;                ///< random numbers, per pair and step
+  double factor = 0;                 ///< of the cost of averaged-drift; 0 if that one failed
+  StageSeconds stages = {};          ///< per particle and step
+  std::optional<double> bytes = {};  ///< of memory per particle beyond the State
 
   double nanoseconds_per_visit() const { return nanoseconds.median / (pairs * visits); }
 };

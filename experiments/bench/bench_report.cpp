@@ -90,20 +90,21 @@ void print_stages(const StageSeconds& stages) {
 }
 
 std::vector<MethodRow> print_methods(const BenchPlan& plan) {
-  constexpr const char* heading = "{:<28} {:<8}  {:>26}  {:>6}  {:>6}  {:>10}  {:>7}  {:>10}\n";
+  constexpr const char* heading =
+      "{:<28} {:<8}  {:>26}  {:>6}  {:>6}  {:>10}  {:>7}  {:>10}  {:>6}\n";
   print_line("\nEvery method ({} particles, one thread)\n", plan.table_particles);
   fmt::print(fmt::runtime(heading), "method", "closure", "ns per particle-step", "factor", "visits",
-             "ns a visit", "numbers", "iterations");
-  fmt::print(fmt::runtime(heading), "", "", "", "", "a pair", "", "a pair", "a step");
+             "ns a visit", "numbers", "iterations", "bytes");
+  fmt::print(fmt::runtime(heading), "", "", "", "", "a pair", "", "a pair", "a step", "");
   const auto rows = bench_methods(plan);
   for (const auto& row : rows) {
     if (!row.failure.empty()) {
       print_line("{:<28} {:<8}  failed: {}\n", row.method, row.closure, row.failure);
       continue;
     }
-    print_line("{:<28} {:<8}  {:>26}  {:>6.2f}  {:>6.1f}  {:>10.1f}  {:>7.1f}  {:>10.1f}\n",
+    print_line("{:<28} {:<8}  {:>26}  {:>6.2f}  {:>6.1f}  {:>10.1f}  {:>7.1f}  {:>10.1f}  {:>6}\n",
                row.method, row.closure, text(row.nanoseconds), row.factor, row.visits,
-               row.nanoseconds_per_visit(), row.numbers, row.iterations);
+               row.nanoseconds_per_visit(), row.numbers, row.iterations, bytes_text(row.bytes));
     print_stages(row.stages);
   }
   return rows;
@@ -168,6 +169,7 @@ nlohmann::json to_json(const MethodRow& row) {
   json["spread"] = quartiles(row.nanoseconds);
   json["pairs_per_particle"] = row.pairs;
   json["visits_per_pair"] = row.visits;
+  json["bytes_per_particle"] = number_or_null(row.bytes);
   json["ns_per_pair_visit"] = row.nanoseconds_per_visit();
   json["solver_iterations_per_step"] = row.iterations;
   json["random_numbers_per_pair"] = row.numbers;

@@ -25,25 +25,26 @@ constexpr Traffic sort = {"particles into cells",
                           vector +                     // positions
                               3 * index + index +      // cells written, read twice; ids
                               2 * number +             // entries read; grid's counters, about
-                              2 * index + quadruple +  // place, id and position by cells
+                              quadruple +              // position by cells
                               3 * sizeof(float),       // and in single precision
                           0, 2 * line + vector_line};  // entries written; positions fetched
-constexpr Traffic search = {"pairs found", 3 * sizeof(float) + index, pair, 0};
+constexpr Traffic search = {"pairs found", 3 * sizeof(float) + 2 * index, pair, 0};
 
 // Velocities and energies into the order of cells.
-constexpr Traffic gather = {"motion by cells", index + quadruple, 0, vector_line + line};
+constexpr Traffic gather = {"motion by cells", 2 * index + quadruple, 0, vector_line + line};
 // And sums, or motion, back.
-constexpr Traffic scatter = {"results by particles", index + quadruple, 0,
+constexpr Traffic scatter = {"results by particles", 2 * index + quadruple, 0,
                              2 * vector_line + 2 * line};
 // A sum over pairs of what depends on positions alone: sums cleared, then read and written.
 constexpr Traffic repulsion = {"pass over pairs: repulsion",
                                quadruple + halo*(quadruple + 2 * quadruple), pair, 0};
 constexpr Traffic exchange = {"pass over pairs: exchange",
-                              quadruple + halo*(2 * quadruple + index + 2 * quadruple), pair, 0};
-// Pairs put into groups, then visited; the particles' motion itself is changed.
-constexpr Traffic groups = {"pairs into groups", halo * 2 * number, 2 * pair, 0};
-constexpr Traffic sweep = {"pass over pairs: sweep", halo*(quadruple + index + 2 * quadruple), pair,
-                           0};
+                              quadruple + halo*(2 * quadruple + 2 * index + 2 * quadruple), pair,
+                              0};
+// Pairs put into groups, an order of them, then visited; the particles' motion itself is changed.
+constexpr Traffic groups = {"pairs into groups", halo * 2 * number, pair + index, 0};
+constexpr Traffic sweep = {"pass over pairs: sweep", halo*(quadruple + 2 * index + 2 * quadruple),
+                           pair + index, 0};
 
 constexpr double motion = vector + number;
 constexpr Traffic check = {"check of the motion", motion, 0, 0};

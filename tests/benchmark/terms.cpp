@@ -1,6 +1,7 @@
 // What each term of the model costs: nanoseconds per pair of a step of averaged-drift for every
-// choice of repulsion, friction and conduction, on 3000 particles at the density 3. All ranges are
-// alike, so that every choice sees the same pairs, and a term that is absent can only save.
+// choice of repulsion, friction and conduction, with internal energies or isothermal, on 3000
+// particles at the density 3. All ranges are alike, so that every choice sees the same pairs, and a
+// term that is absent can only save.
 //
 // "moving" is the whole step, pair search included; "frozen" particles keep their pairs, and what
 // is left are noise, arithmetic and sums. Medians of interleaved rounds, so that a machine that
@@ -61,15 +62,18 @@ struct Runner {
   }
 };
 
-/// One choice of terms; `friction` and `heat` are null for none.
+/// One choice of terms; `friction` is null for none. An isothermal fluid has no conduction, and its
+/// closures are one.
 struct Choice {
+  bool isothermal;
   bool repulsion;
   const FrictionClosure* friction;
   HeatForm heat;
 
   FluidParameters parameters() const {
     FluidParameters f;
-    f.heat_capacity = 60;
+    f.isothermal = isothermal;
+    if (!isothermal) f.heat_capacity = 60;
     f.repulsion = repulsion ? 25 : 0;
     f.friction = friction ? 4.5 : 0;
     if (friction) f.friction_closure = *friction;
@@ -87,9 +91,13 @@ std::vector<Choice> all_choices() {
     for (const auto* closure : {static_cast<const FrictionClosure*>(nullptr), &noise, &friction}) {
       for (const auto heat :
            {HeatForm::none, HeatForm::inverse_temperature, HeatForm::temperature}) {
-        all.push_back({repulsion, closure, heat});
+        all.push_back({false, repulsion, closure, heat});
       }
     }
+  }
+  for (const bool repulsion : {false, true}) {
+    all.push_back({true, repulsion, nullptr, HeatForm::none});
+    all.push_back({true, repulsion, &noise, HeatForm::none});
   }
   return all;
 }
@@ -99,14 +107,19 @@ Runner make_runner(const Choice& choice, bool frozen) {
   const Noise noise(1, 0);
   const Box box = make_box(fluid, Layout::fluid, particles, density, 0);
   State state = place(box, Layout::fluid, Placement::random, particles, 0, noise);
-  const auto law = microcanonical_law(fluid, Layout::fluid, particles);
-  draw_microcanonical(fluid, Layout::fluid, law.energy_at(1), noise, state);
+  if (choice.isothermal) {
+    draw_canonical(fluid, Layout::fluid, 1, noise, state);
+  } else {
+    const auto law = microcanonical_law(fluid, Layout::fluid, particles);
+    draw_microcanonical(fluid, Layout::fluid, law.energy_at(1), noise, state);
+  }
   return {System(fluid, box, std::move(state), noise, frozen)};
 }
 
 void print_row(const Choice& choice, Runner& moving, Runner& frozen) {
   const double pairs = moving.pairs();
-  std::printf("%-9s  %-8s  %-19s  %9.0f  %8.2f  %9.1f", choice.repulsion ? "yes" : "none",
+  std::printf("%-10s  %-9s  %-8s  %-19s  %9.0f  %8.2f  %9.1f",
+              choice.isothermal ? "isothermal" : "own", choice.repulsion ? "yes" : "none",
               choice.friction ? std::string(to_string(*choice.friction)).c_str() : "none",
               std::string(to_string(choice.heat)).c_str(), pairs,
               pairs > 0 ? moving.numbers() / pairs : 0.0, 1e6 * moving.median_seconds());
@@ -130,10 +143,10 @@ void run() {
     for (std::size_t n = 0; n < choices.size(); ++n) moving[n].advance(), frozen[n].advance();
   }
   std::printf("averaged-drift, %zu particles at density %g, one thread\n\n", particles, density);
-  std::printf("%-9s  %-8s  %-19s  %9s  %8s  %9s  %9s  %9s\n", "repulsion", "friction", "conduction",
-              "pairs", "numbers", "us", "ns a pair", "ns a pair");
-  std::printf("%-9s  %-8s  %-19s  %9s  %8s  %9s  %9s  %9s\n", "", "", "", "a step", "a pair",
-              "a step", "moving", "frozen");
+  std::printf("%-10s  %-9s  %-8s  %-19s  %9s  %8s  %9s  %9s  %9s\n", "energies", "repulsion",
+              "friction", "conduction", "pairs", "numbers", "us", "ns a pair", "ns a pair");
+  std::printf("%-10s  %-9s  %-8s  %-19s  %9s  %8s  %9s  %9s  %9s\n", "", "", "", "", "a step",
+              "a pair", "a step", "moving", "frozen");
   for (std::size_t n = 0; n < choices.size(); ++n) print_row(choices[n], moving[n], frozen[n]);
 }
 
