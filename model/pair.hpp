@@ -65,8 +65,8 @@ enum class SweepSequence { coloured, by_ids };
 /// those at the start of the sweep, to which all changes are added at its end.
 enum class SweepEnergies { fresh, frozen };
 
-/// Whether who asks for a trial end comes again to the same noise: it is then kept, 16 bytes a pair,
-/// instead of drawn anew.
+/// Whether who asks for a trial end comes again to the same noise: it is then kept, 16 bytes a
+/// pair, instead of drawn anew, and in a small system the geometry of the pairs too.
 enum class Rounds { one, several };
 
 /// How a sweep goes over the pairs.

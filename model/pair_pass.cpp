@@ -71,17 +71,16 @@ void PairPass::reserve(std::size_t pairs) {
   memory_.assign(columns * stride, 0.0);
   double* next = memory_.data();
   for (double** column :
-       {&arrays_.r,         &arrays_.w_friction,   &arrays_.w_heat,     &arrays_.v,
-        &arrays_.u_i,       &arrays_.u_j,          &arrays_.noise,      &arrays_.heat_noise,
-        &arrays_.uniform,   &arrays_.heat_uniform, &arrays_.trial_v,    &arrays_.trial_u_i,
-        &arrays_.trial_u_j, &arrays_.trial_dv_i,   &arrays_.trial_dv_j, &arrays_.momentum,
-        &arrays_.energy_i,  &arrays_.energy_j,     &arrays_.e_x,        &arrays_.e_y,
-        &arrays_.e_z}) {
+       {&own_.r,        &own_.w_friction, &own_.w_heat,     &own_.v,          &own_.u_i,
+        &own_.u_j,      &own_.noise,      &own_.heat_noise, &own_.uniform,    &own_.heat_uniform,
+        &own_.trial_v,  &own_.trial_u_i,  &own_.trial_u_j,  &own_.trial_dv_i, &own_.trial_dv_j,
+        &own_.momentum, &own_.energy_i,   &own_.energy_j,   &own_.e_x,        &own_.e_y,
+        &own_.e_z}) {
     *column = next;
     next += stride;
   }
-  std::fill_n(arrays_.uniform, stride, 1.0);
-  std::fill_n(arrays_.heat_uniform, stride, 1.0);
+  std::fill_n(own_.uniform, stride, 1.0);
+  std::fill_n(own_.heat_uniform, stride, 1.0);
   id_i_.resize(stride);
   id_j_.resize(stride);
 }
@@ -89,6 +88,9 @@ void PairPass::reserve(std::size_t pairs) {
 void PairPass::take(const Fluid& fluid, const CellGrid& cells, const PairIndices& pairs,
                     std::size_t first, std::size_t count) {
   reserve(count);
+  const PairLaw* const law = arrays_.law;
+  arrays_ = own_;
+  arrays_.law = law;
   fluid_ = &fluid;
   cells_ = &cells;
   i_ = pairs.i.data() + first;
@@ -112,6 +114,26 @@ void PairPass::take(const Fluid& fluid, const CellGrid& cells, const GroupedPair
   }
   i_ = ordered_i_.data();
   j_ = ordered_j_.data();
+}
+
+// The columns of what the fluid does not have stay the pass's own, which are never written.
+void PairPass::work_in(double* kept, std::size_t apart, bool with_geometry) {
+  const auto put = [&](double*& column) {
+    column = kept;
+    kept += apart;
+  };
+  if (fluid_->has_friction()) put(arrays_.noise);
+  if (fluid_->has_conduction()) put(arrays_.heat_noise);
+  if (!with_geometry) return;
+  for (double** column : {&arrays_.e_x, &arrays_.e_y, &arrays_.e_z, &arrays_.r}) put(*column);
+  if (fluid_->has_friction()) put(arrays_.w_friction);
+  if (fluid_->has_conduction()) put(arrays_.w_heat);
+}
+
+std::size_t PairPass::columns(const Fluid& fluid, bool with_geometry) {
+  const std::size_t terms =
+      static_cast<unsigned>(fluid.has_friction()) + static_cast<unsigned>(fluid.has_conduction());
+  return with_geometry ? 2 * terms + 4 : terms;
 }
 
 void PairPass::geometry(std::size_t from, std::size_t to) {
@@ -222,16 +244,6 @@ void PairPass::draw_no_uniforms() {
   std::fill_n(arrays_.uniform, capacity_, 1.0);
   std::fill_n(arrays_.heat_uniform, capacity_, 1.0);
   has_uniforms_ = false;
-}
-
-void PairPass::recall_normals(const double* kept, std::size_t apart) {
-  std::copy_n(kept, count_, arrays_.noise);
-  std::copy_n(kept + apart, count_, arrays_.heat_noise);
-}
-
-void PairPass::keep_normals(double* kept, std::size_t apart) const {
-  std::copy_n(arrays_.noise, count_, kept);
-  std::copy_n(arrays_.heat_noise, count_, kept + apart);
 }
 
 void PairPass::motion(const PassParticles& particles, std::size_t from, std::size_t to) {

@@ -69,6 +69,12 @@ class PairPass {
   /// The laws of those that the next passes treat.
   void set_law(const PairLaw& law) { arrays_.law = &law; }
 
+  /// Has the normals, and the geometry where it is kept too, written to and read from memory that
+  /// stays, instead of the pass's own, until pairs are taken anew: `columns` arrays that begin
+  /// `apart` from each other and have room for lanes beyond the last pair.
+  void work_in(double* kept, std::size_t apart, bool with_geometry);
+  static std::size_t columns(const Fluid& fluid, bool with_geometry);
+
   void geometry(std::size_t from, std::size_t to);
   /// The geometry of contacts with a boundary, all that have been taken.
   void contact_geometry(std::size_t boundary);
@@ -78,9 +84,6 @@ class PairPass {
   /// The noise of contacts with a boundary.
   void draw_contact_normals(const Noise& noise, Stage stage, std::uint32_t boundary_id);
   void draw_contact_uniforms(const Noise& noise, Stage stage, std::uint32_t boundary_id);
-  /// Normals from and to memory that holds those of friction and `apart` further those of heat.
-  void recall_normals(const double* kept, std::size_t apart);
-  void keep_normals(double* kept, std::size_t apart) const;
   void motion(const PassParticles& particles, std::size_t from, std::size_t to);
   void trial(const PassParticles& particles);
   void run(const PairKernel& kernel, std::size_t from, std::size_t to) {
@@ -121,7 +124,8 @@ class PairPass {
   bool measured_ = false;
   PassSeconds seconds_;
   std::vector<double> memory_;
-  PairArrays arrays_{};
+  PairArrays own_{};     ///< in that memory
+  PairArrays arrays_{};  ///< in use
   std::vector<std::uint32_t> id_i_, id_j_;
   std::vector<std::uint32_t> ordered_i_, ordered_j_;
 };

@@ -349,7 +349,7 @@ void PairBlocks::find(const CellGrid& cells, const Threads& threads) {
   threads.phases(blocks, [&](unsigned, std::size_t, std::size_t n) {
     PairBlock& block = blocks_[n];
     block.grouped = false;
-    block.normals.clear();
+    block.kept.clear();
     // Found in a place with room for all candidates, kept in one as large as what is found.
     thread_local PairIndices found;
     search_block(found, block, cells);

@@ -58,11 +58,11 @@ struct PairBlock {
       kind_end;  ///< of each kind of pair: kind = i's species * species + j's
   PairGroups groups;
   bool grouped = false;
-  /// The normals of friction and then those of heat, where they are kept, and of which step and
-  /// stage they are.
-  std::vector<double> normals;
-  std::uint64_t normals_step = 0;
-  unsigned normals_stage = 0;
+  /// What is kept of the pairs for several rounds (PairPass::work_in), none after find(), and of
+  /// which step and stage the noise among it is.
+  std::vector<double> kept;
+  std::uint64_t kept_step = 0;
+  unsigned kept_stage = 0;
 };
 
 /// All pairs within a range, in blocks. The cells are cut into tiles, coloured so that two tiles of

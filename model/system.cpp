@@ -10,6 +10,9 @@ namespace {
 
 /// So many that what the passes read and write stays in the cache.
 constexpr std::size_t pairs_a_chunk = 512;
+/// In a system of fewer particles several rounds share the geometry of the pairs, which takes 290
+/// bytes a particle at density 3; in larger ones it is computed anew.
+constexpr std::size_t most_with_geometry = 10000;
 /// The other side of a contact is at rest, and no exchange exhausts it.
 constexpr Quadruple boundary_motion{0, 0, 0, 1e300};
 
@@ -119,9 +122,22 @@ void System::count_visit(bool noise, bool uniforms) {
   if (uniforms) counters_.random_numbers += 2 * pairs;
 }
 
-bool System::has_kept_normals(const PairBlock& block, Stage stage) const {
-  return block.normals.size() == 2 * block.found.size && block.found.size > 0 &&
-         block.normals_step == noise_.step() && block.normals_stage == stage.number;
+bool System::is_kept(Stage stage) {
+  const auto& blocks = pairs_.all();
+  return std::all_of(blocks.begin(), blocks.end(), [&](const PairBlock& block) {
+    return block.found.size == 0 || (!block.kept.empty() && block.kept_step == noise_.step() &&
+                                     block.kept_stage == stage.number);
+  });
+}
+
+bool System::keeps_geometry() const { return size() < most_with_geometry; }
+
+void System::work_in_kept(PairPass& pass, PairBlock& block, std::size_t first, Stage stage) const {
+  const std::size_t apart = block.found.size + 2 * Lanes::count();
+  resize_closely(block.kept, apart * PairPass::columns(fluid_, keeps_geometry()));
+  block.kept_step = noise_.step();
+  block.kept_stage = stage.number;
+  pass.work_in(block.kept.data() + first, apart, keeps_geometry());
 }
 
 void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total, Stage stage,
@@ -130,25 +146,13 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
   gather_motion(state_, motion_);
   if (trial) gather_motion(*trial, trial_);
   const PassParticles particles{motion_.data(), trial_.data(), nullptr, nullptr};
-  const bool kept = rounds == Rounds::several &&
-                    std::all_of(pairs_.all().begin(), pairs_.all().end(), [&](auto& block) {
-                      return block.found.size == 0 || has_kept_normals(block, stage);
-                    });
+  const bool again = rounds == Rounds::several;
+  const bool kept = again && is_kept(stage);
   for_each_chunk([&](PairPass& pass, PairBlock& block, std::size_t first, std::size_t count) {
-    pass.geometry(0, count);
-    const std::size_t pairs = block.found.size;
-    if (kept) {
-      pass.recall_normals(block.normals.data() + first, pairs);
-    } else {
-      pass.draw_normals(noise_, stage);
-    }
+    if (again) work_in_kept(pass, block, first, stage);
+    if (!kept || !keeps_geometry()) pass.geometry(0, count);
+    if (!kept) pass.draw_normals(noise_, stage);
     pass.draw_no_uniforms();
-    if (rounds == Rounds::several && !kept) {
-      resize_closely(block.normals, 2 * pairs);
-      block.normals_step = noise_.step();
-      block.normals_stage = stage.number;
-      pass.keep_normals(block.normals.data() + first, pairs);
-    }
     pass.motion(particles, 0, count);
     if (trial) pass.trial(particles);
     pass.run(kernel, 0, count);
@@ -242,7 +246,7 @@ void System::drop_if_isothermal(std::vector<double>& energies) const {
 
 void System::forget_sums() {
   sums_.assign(size() + BoundaryContacts::numbers, {});
-  for (auto& block : pairs_.all()) block.normals.clear();
+  for (auto& block : pairs_.all()) block.kept.clear();
   summing_ = false;
 }
 

@@ -191,7 +191,11 @@ class System {
   /// velocity round.
   Vector reflect(Vector position, std::size_t place, Surroundings& received);
   void check_species() const;
-  bool has_kept_normals(const PairBlock& block, Stage stage) const;
+  /// Whether this noise of all pairs is kept.
+  bool is_kept(Stage stage);
+  /// Has a pass work in what is kept of a block.
+  void work_in_kept(PairPass& pass, PairBlock& block, std::size_t first, Stage stage) const;
+  bool keeps_geometry() const;
   void gather_motion(const Motion& motion, std::vector<Quadruple>& gathered) const;
   void count_visit(bool noise, bool uniforms);
   void renew_conservative();

@@ -471,7 +471,7 @@ TEST(Noise, OfTrialStepsIsDrawnOncePerStepStageAndPositions) {
     system.accumulate(
         system.motion(),
         [](const auto& start, const auto& end) { return Transfer{start.noise + end.heat_noise}; },
-        total, stage);
+        total, stage, Rounds::several);
     return system.counters().random_numbers - before;
   };
   const auto numbers = draw(0);
@@ -487,6 +487,49 @@ TEST(Noise, OfTrialStepsIsDrawnOncePerStepStageAndPositions) {
   system.move(0.01);
   EXPECT_GT(draw(1), 0U);
   EXPECT_NE(total.momentum, before_move);
+}
+
+/// A fluid of some terms and a state of so many particles at density 3, at random.
+System random_system(double friction, HeatForm heat, std::size_t particles) {
+  auto f = small_fluid({FrictionClosure::noise, heat, true}, 0.5);
+  f.friction = friction;
+  Box box{Vector::Constant(std::cbrt(static_cast<double>(particles) / 3))};
+  Uniform uniform(3);
+  State state;
+  for (std::uint32_t id = 0; id < particles; ++id) {
+    state.position.push_back(uniform.vector(0, 1).cwiseProduct(box.lengths));
+    state.velocity.push_back(uniform.vector(-1, 1));
+    state.internal_energy.push_back(uniform(5, 15));
+    state.id.push_back(id);
+  }
+  return System(Fluid(f), box, state, Noise(4, 2));
+}
+
+/// Every quantity of a pair and of its trial end.
+constexpr auto everything_of_a_trial = [](const auto& start, const auto& end) {
+  auto total = everything(start);
+  return total += everything(end) += Transfer{end.dv_i, end.dv_j, start.v};
+};
+
+// Small systems keep more than large ones.
+TEST(Rounds, ThatShareWhatIsKeptSeeWhatOneAloneSees) {
+  for (const std::size_t particles : {200, 10100}) {
+    for (const auto heat : {HeatForm::none, HeatForm::temperature}) {
+      for (const double friction : {0.0, 2.0}) {
+        System system = random_system(friction, heat, particles);
+        Motion trial = system.motion();
+        Exchange alone, shared;
+        for (int round = 0; round < 3; ++round) {
+          system.accumulate(trial, everything_of_a_trial, alone, 1);
+          system.accumulate(trial, everything_of_a_trial, shared, 1, Rounds::several);
+          EXPECT_EQ(alone.momentum, shared.momentum) << particles << " round " << round;
+          EXPECT_EQ(alone.energy, shared.energy) << particles << " round " << round;
+          for (auto& velocity : trial.velocity) velocity *= 1.5;
+          if (round == 1) system.set_motion(trial);
+        }
+      }
+    }
+  }
 }
 
 // ---- What a system refuses. --------------------------------------------------------------------
