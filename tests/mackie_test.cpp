@@ -221,7 +221,7 @@ TEST(MackiePresets, AreTheScenesOfTheExperiments) {
 }
 
 TEST(MackieRoll, RunsAlikeOnAnyThreadsAndInPieces) {
-  const RollRun run{{"shardlow-s1", {}}, 0.1, 13000, 0.01, 1, 3};
+  const RollRun run{{"shardlow-s1", {}}, 0.1, 13000, 0.01, 1, 3, 1.8};
   const auto once = run_roll(run, 5, {1, {}});
   EXPECT_EQ(run_roll(run, 5, {2, {}}), once);
   EXPECT_NE(run_roll(run, 6, {1, {}}), once);

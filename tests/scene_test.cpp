@@ -210,7 +210,7 @@ TEST(SceneTable, has_a_meaning_and_a_range_for_every_key) {
     EXPECT_FALSE(key.rule.allowed().empty()) << key.name;
     EXPECT_FALSE(key.rule.schema().empty()) << key.name;
   }
-  EXPECT_EQ(names.size(), 36u);
+  EXPECT_EQ(names.size(), 37u);
 }
 
 }  // namespace

@@ -189,10 +189,8 @@ void limit_row(const Case& which, const Conditions& conditions, const Records& r
                             which.name, longest, factor);
   row.unit = "zeta_0/l";
   const double theory = transport::dissipative_viscosity(f, 1) + carried;
-  row.paper = Interval{theory, theory, theory};
-  row.paper_text = "2 pi r*^5/1575 + rho k T/(2 w_0)";
   row.ours = interval_of(scaled(*found, factor));
-  row.verdict = compare(row.ours, *row.paper, 0.2);
+  put_theory(row, theory, "2 pi r*^5/1575 + rho k T/(2 w_0)", 0.2);
   row.explanation = fmt::format(
       "friction {:.4f}, carried momentum {:.4f}; the paper gives {:g}. Friction's share is that of "
       "a uniform gradient: the network of particles where chance puts them has less",

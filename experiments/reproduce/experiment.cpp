@@ -106,6 +106,16 @@ Verdict compare(const Interval& ours, const Interval& paper, double resolution) 
   return reach > resolution * scale ? Verdict::not_resolved : Verdict::agrees;
 }
 
+void put_theory(Row& row, const Interval& theory, std::string text, double resolution) {
+  row.theory = theory;
+  row.theory_text = std::move(text);
+  row.verdict = compare(row.ours, theory, resolution);
+}
+
+void put_theory(Row& row, double theory, std::string text, double resolution) {
+  put_theory(row, Interval{theory, theory, theory}, std::move(text), resolution);
+}
+
 json to_json(const Outcome& outcome) {
   return {{"rows", list(outcome.rows)},
           {"pictures", list(outcome.pictures)},

@@ -80,6 +80,10 @@ struct Row {
 /// where that is 0) to either side, or is not finite; else agrees.
 Verdict compare(const Interval& ours, const Interval& paper, double resolution);
 
+/// What theory says of ours, and the verdict against it.
+void put_theory(Row& row, const Interval& theory, std::string text, double resolution);
+void put_theory(Row& row, double theory, std::string text, double resolution);
+
 /// Values on a rectangular grid: value(column, row) = values[row * columns + column].
 struct Field {
   judge::Axis x, y;

@@ -24,8 +24,21 @@ struct NamedRun {
   bool wide;
 };
 
+/// Where heat in is about heat out. So little heat passes the walls that a fluid at their mean
+/// temperature takes thousands of units of time to get there.
+double stationary_temperature(HotWall hot_wall, double pull) {
+  if (hot_wall == HotWall::floor) return 1.71;
+  return pull > 0 ? 1.42 : 1.45;
+}
+
+RollRun roll(std::size_t count, HotWall hot_wall, double pull, double settle, double duration) {
+  return {
+      splitting, roll_step, count, pull, settle, duration, stationary_temperature(hot_wall, pull),
+      hot_wall};
+}
+
 RollRun slice(HotWall hot_wall, double pull, double settle, double duration) {
-  return {splitting, roll_step, slice_particles, pull, settle, duration, hot_wall};
+  return roll(slice_particles, hot_wall, pull, settle, duration);
 }
 
 /// The roll that is shown, then slices; the last one has no field.
@@ -34,9 +47,8 @@ std::vector<NamedRun> runs_of(Effort effort) {
   const double settle = full ? 1500 : 400, duration = full ? 3000 : 1000;
   std::vector<NamedRun> all;
   if (full) {
-    const RollRun cube{splitting, roll_step, roll_particles, gravity,
-                       settle,    duration,  HotWall::left};
-    all.push_back({"hot left wall, the cube", cube, true});
+    all.push_back({"hot left wall, the cube",
+                   roll(roll_particles, HotWall::left, gravity, settle, duration), true});
   }
   all.push_back({"hot left wall, slice", slice(HotWall::left, gravity, settle, duration), false});
   for (int n = 1; n <= (full ? 3 : 1); ++n) {
@@ -178,11 +190,9 @@ Interval ratio(const Interval& a, const Interval& b) {
 void add_heat(Outcome& outcome, const NamedRun& named, const json& record) {
   const auto given = in(record, named.run), taken = out(record, named.run);
   add(outcome, "heat flux into the fluid at the hot wall", named, "energy/(area t*)", given);
-  Row& row = add(outcome, "heat flux out of the fluid at the cold wall", named, "energy/(area t*)",
-                 taken, "Stationary where the two intervals meet.");
-  row.paper = given;
-  row.paper_text = "what goes in at the hot wall (ours)";
-  row.verdict = compare(taken, given, 0.2);
+  Row& row =
+      add(outcome, "heat flux out of the fluid at the cold wall", named, "energy/(area t*)", taken);
+  put_theory(row, given, "a stationary flow: what goes in at the hot wall", 0.2);
 }
 
 void add_roll(Outcome& outcome, const NamedRun& named, const json& record) {
@@ -337,7 +347,14 @@ Outcome conclude(const Conditions& conditions, const Records& records) {
       fmt::format("A slice is the same section and the same fluid with {} particles in an eighth "
                   "of the depth: the same Rayleigh number, more noise.",
                   slice_particles),
-      "Starts are uniform in the exact law at T* = 1.8, without any flow."};
+      fmt::format("Starts are uniform in the exact law, without any flow, at temperatures near "
+                  "those at which heat in is heat out: {:g} between side walls, {:g} without "
+                  "field, {:g} above a hot floor. From the mean of the walls, 1.8, the fluid "
+                  "would get there in thousands of units of time: they are coupled to it by the "
+                  "friction of few particles, more at the dense cold wall than at the hot one.",
+                  stationary_temperature(HotWall::left, gravity),
+                  stationary_temperature(HotWall::left, 0),
+                  stationary_temperature(HotWall::floor, gravity))};
   return outcome;
 }
 

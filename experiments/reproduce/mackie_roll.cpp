@@ -83,8 +83,8 @@ json run_roll(const RollRun& run, std::uint64_t seed, const Workplace& workplace
   const auto fluid = mackie_parameters(mackie_gas);
   const Box box = roll_box(run);
   const Noise noise(seed, 0);
-  System system(Fluid(fluid), box,
-                mackie_in_law(fluid, box, run.particles, 0.5 * (hot + cold), 0, noise), noise);
+  System system(Fluid(fluid), box, mackie_in_law(fluid, box, run.particles, run.start, 0, noise),
+                noise);
   RollSeries series(run.time_step, hot_face(run));
   Fields fields(system, {bins, 1, bins});
   const auto steps = [&](double time) {
@@ -98,6 +98,7 @@ json run_roll(const RollRun& run, std::uint64_t seed, const Workplace& workplace
            {"method", run.method.name},
            {"particles", run.particles},
            {"gravity", run.gravity},
+           {"start", run.start},
            {"hot_face", hot_face(run)}});
   return {{"series", series.to_json()}, {"fields", fields.to_json()}};
 }

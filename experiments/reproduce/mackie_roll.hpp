@@ -22,6 +22,7 @@ struct RollRun {
   std::size_t particles;  ///< fewer than in the cube: a slice of the same section, less deep
   double gravity;
   double settle, duration;            ///< fields are averaged from `settle` on
+  double start;                       ///< temperature of the whole fluid at the start
   HotWall hot_wall = HotWall::floor;  ///< the cold one is opposite
 };
 

@@ -148,8 +148,6 @@ Row row_of(const TransportScene& scene, const Method& method, double step,
   const std::string cell = cell_name(scene, method, step);
   row.setting = cell;
   row.unit = unit_of(coefficient);
-  if (reference.value) row.paper = interval_of(*reference.value);
-  row.paper_text = fmt::format("limit of small steps, {} methods pooled", reference.methods);
   const auto ours = found(records, cell, coefficient);
   const auto& record = records.at(cell);
   if (!ours) {
@@ -162,7 +160,8 @@ Row row_of(const TransportScene& scene, const Method& method, double step,
   }
   row.ours = interval_of(*ours);
   if (!reference.value) return row;
-  row.verdict = compare(row.ours, *row.paper, 0.2);
+  put_theory(row, interval_of(*reference.value),
+             fmt::format("limit of small steps, {} methods pooled", reference.methods), 0.2);
   const double off = ours->mean / reference.value->mean - 1;
   const double error = interval_quantile * std::hypot(ours->error, reference.value->error) /
                        std::abs(reference.value->mean);
@@ -203,10 +202,10 @@ void pooled_row(const TransportScene& scene, const std::string& coefficient, con
   if (!reference.left_out.empty())
     row.explanation += "; left out as outliers: " + reference.left_out;
   if (const auto theory = theory_of(scene, coefficient)) {
-    row.paper = Interval{*theory, *theory, *theory};
-    row.paper_text = coefficient == "sound speed" ? "MAN 3.30, of long waves"
-                                                  : "mean field, exact for many neighbours";
-    row.verdict = compare(row.ours, *row.paper, 0.2);
+    put_theory(row, *theory,
+               coefficient == "sound speed" ? "MAN 3.30, of long waves"
+                                            : "mean field, exact for many neighbours",
+               0.2);
   }
   outcome.rows.push_back(row);
 }
@@ -222,11 +221,8 @@ void sound_rows(const TransportScene& ideal, const Records& records, Outcome& ou
     row.setting = fmt::format("{}, {}, step {:g}, wavelength {:g}", ideal.name, sound_method,
                               sound_step, length);
     row.unit = "length/time";
-    const double theory = transport::sound_speed(ideal.fluid);
-    row.paper = Interval{theory, theory, theory};
-    row.paper_text = "MAN 3.30";
     row.ours = interval_of(*ours);
-    row.verdict = compare(row.ours, *row.paper, 0.1);
+    put_theory(row, transport::sound_speed(ideal.fluid), "MAN 3.30", 0.1);
     row.explanation =
         "waves much longer than the 3 units of length that a particle flies are sound";
     outcome.rows.push_back(row);

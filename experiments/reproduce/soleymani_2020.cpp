@@ -136,12 +136,6 @@ std::string setting_of(const std::string& name, const std::string& method,
   return fmt::format("{}; {}, step 0.01{}{}", name, method, more.empty() ? "" : "; ", more);
 }
 
-void put_theory(Row& row, double theory, std::string text, double resolution) {
-  row.theory = exactly(theory);
-  row.theory_text = std::move(text);
-  row.verdict = compare(row.ours, *row.theory, resolution);
-}
-
 Row about_row(std::string quantity, std::string setting, std::string words,
               const std::vector<RatioAt>& ratios) {
   constexpr double about = 0.25;

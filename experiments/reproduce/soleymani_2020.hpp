@@ -70,9 +70,6 @@ std::string setting_of(const std::string& name, const std::string& method,
 /// to us, so that they are evaluated here.
 inline constexpr const char* analytic_name = "analytic (eq. 17-26)";
 
-/// What theory says of ours, and the verdict against it.
-void put_theory(Row& row, double theory, std::string text, double resolution);
-
 /// A ratio to what it should be about, and where it was measured.
 struct RatioAt {
   std::string where;
