@@ -481,6 +481,7 @@ void System::set_motion(const Motion& motion) {
 void System::swap_motion(Motion& motion) {
   std::swap(static_cast<Motion&>(state_), motion);
   drop_if_isothermal(state_.internal_energy);
+  ++energies_version_;
   check();
 }
 

@@ -39,12 +39,11 @@ void System::renew_thermal_force() {
   }
   find_pairs();
   const auto& f = fluid_.parameters();
-  const auto& place = cells_.place();
   thermal_repulsion_.resize(size());
   motion_.assign(size() + BoundaryContacts::numbers, {});
   for_each_particle([&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      const std::size_t i = place[n];
+      const std::size_t i = cells_.place(n);
       const double u = state_.internal_energy[i] / energy_factor_[i];
       thermal_repulsion_[i] =
           f.thermal_repulsion * equation_of_state(i).temperature(u) / (2 * f.temperature);
