@@ -106,7 +106,7 @@ class EquationOfState {
   /// theta(u).
   template <class V>
   V temperature(V internal_energy) const {
-    if (form_ == Form::constant) [[likely]]
+    if (meets_common_laws<V> || form_ == Form::constant) [[likely]]
       return internal_energy * inverse_heat_capacity_;
     return other_temperature(internal_energy);
   }
@@ -114,7 +114,7 @@ class EquationOfState {
   /// 1/c(u) = dtheta/du; 0 for a reservoir.
   template <class V>
   V inverse_heat_capacity(V internal_energy) const {
-    if (form_ == Form::constant) [[likely]]
+    if (meets_common_laws<V> || form_ == Form::constant) [[likely]]
       return V(inverse_heat_capacity_);
     return other_inverse_heat_capacity(internal_energy);
   }
@@ -123,7 +123,7 @@ class EquationOfState {
   template <class V>
   V entropy(V internal_energy) const {
     using std::log;
-    if (form_ == Form::constant) [[likely]]
+    if (meets_common_laws<V> || form_ == Form::constant) [[likely]]
       return heat_capacity_ * log(internal_energy);
     return other_entropy(internal_energy);
   }
@@ -131,7 +131,7 @@ class EquationOfState {
   /// s(u + gain) - s(u), to rounding however small the gain; both energies must be above 0.
   template <class V>
   V entropy_gain(V internal_energy, V gain) const {
-    if (form_ == Form::constant) [[likely]] {
+    if (meets_common_laws<V> || form_ == Form::constant) [[likely]] {
       const V x = gain / internal_energy;
       return heat_capacity_ * x * log_one_plus_over(x);
     }

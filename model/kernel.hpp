@@ -6,6 +6,7 @@
 
 #include "model/lanes.hpp"
 #include "model/pair.hpp"
+#include "model/pair_law.hpp"
 
 namespace driftless {
 
@@ -58,7 +59,10 @@ struct PairArrays {
     }
   }
   static void store(double value, double* to) { *to = value; }
-  static void store(const Lanes& values, double* to) { values.store(to); }
+  template <class V>
+  static void store(const V& values, double* to) {
+    values.store(to);
+  }
 };
 
 /// A kernel of any type, run over arrays of pairs: in lanes, or one by one if it takes no lanes.
@@ -92,22 +96,44 @@ class PairKernel {
     }
   }
 
-  // Flattened: a kernel is made of small functions, and the loop around it is hot.
   template <class Kernel>
-  [[gnu::flatten]] static void run_all(const void* called, const PairArrays& arrays,
-                                       std::size_t from, std::size_t to) {
+  static void run_all(const void* called, const PairArrays& arrays, std::size_t from,
+                      std::size_t to) {
     const auto& kernel = *static_cast<const Kernel*>(called);
-    using V = std::conditional_t<std::is_invocable_v<Kernel, Pair<Lanes>>, Lanes, double>;
+    if constexpr (!std::is_invocable_v<Kernel, Pair<Lanes>>) {
+      loop<double>(kernel, arrays, from, to);
+    } else if (arrays.law->is_common()) {
+      loop<CommonLanes>(kernel, arrays, from, to);
+    } else {
+      loop<Lanes>(kernel, arrays, from, to);
+    }
+  }
+  template <class Kernel>
+  static void run_all_trials(const void* called, const PairArrays& arrays, std::size_t from,
+                             std::size_t to) {
+    const auto& kernel = *static_cast<const Kernel*>(called);
+    if constexpr (!std::is_invocable_v<Kernel, Pair<Lanes>, TrialPair<Lanes>>) {
+      loop_of_trials<double>(kernel, arrays, from, to);
+    } else if (arrays.law->is_common()) {
+      loop_of_trials<CommonLanes>(kernel, arrays, from, to);
+    } else {
+      loop_of_trials<Lanes>(kernel, arrays, from, to);
+    }
+  }
+
+  // Flattened: a kernel is made of small functions, and the loop around it is hot. Not inlined: the
+  // loops would compete for registers.
+  template <class V, class Kernel>
+  [[gnu::flatten, gnu::noinline]] static void loop(const Kernel& kernel, const PairArrays& arrays,
+                                                   std::size_t from, std::size_t to) {
     for (std::size_t n = from; n < to; n += width<V>()) {
       arrays.answer<V>(n, kernel(arrays.pair<V>(n)));
     }
   }
-  template <class Kernel>
-  [[gnu::flatten]] static void run_all_trials(const void* called, const PairArrays& arrays,
-                                              std::size_t from, std::size_t to) {
-    const auto& kernel = *static_cast<const Kernel*>(called);
-    using V = std::conditional_t<std::is_invocable_v<Kernel, Pair<Lanes>, TrialPair<Lanes>>, Lanes,
-                                 double>;
+  template <class V, class Kernel>
+  [[gnu::flatten, gnu::noinline]] static void loop_of_trials(const Kernel& kernel,
+                                                             const PairArrays& arrays,
+                                                             std::size_t from, std::size_t to) {
     for (std::size_t n = from; n < to; n += width<V>()) {
       arrays.answer<V>(n, kernel(arrays.pair<V>(n), arrays.trial_pair<V>(n)));
     }

@@ -12,6 +12,11 @@ namespace driftless {
 /// view), comparisons, and `select`, as lanes have no branches.
 inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
 
+/// Whether numbers of a type promise to meet no laws but the common ones (PairLaw::is_common):
+/// what the others need then stands in no loop.
+template <class V>
+constexpr bool meets_common_laws = false;
+
 // The number of lanes follows the instructions that a file is compiled for. The namespace does too,
 // so that files compiled for different ones can be linked together.
 namespace HWY_NAMESPACE {
@@ -36,43 +41,48 @@ class LaneMask {
 };
 
 /// As many doubles as one instruction handles, with the arithmetic of one double.
-class Lanes {
+template <bool of_common_laws>
+class LanesOf {
  public:
   using Tag = hwy::HWY_NAMESPACE::ScalableTag<double>;
   using Raw = hwy::HWY_NAMESPACE::Vec<Tag>;
 
-  Lanes() : Lanes(0.0) {}
-  Lanes(double value) : raw_(hwy::HWY_NAMESPACE::Set(Tag(), value)) {}
-  Lanes(Raw raw) : raw_(raw) {}
-  static Lanes load(const double* from) { return hwy::HWY_NAMESPACE::LoadU(Tag(), from); }
+  LanesOf() : LanesOf(0.0) {}
+  LanesOf(double value) : raw_(hwy::HWY_NAMESPACE::Set(Tag(), value)) {}
+  LanesOf(Raw raw) : raw_(raw) {}
+  static LanesOf load(const double* from) { return hwy::HWY_NAMESPACE::LoadU(Tag(), from); }
   void store(double* to) const { hwy::HWY_NAMESPACE::StoreU(raw_, Tag(), to); }
   static constexpr std::size_t count() { return hwy::HWY_NAMESPACE::MaxLanes(Tag()); }
   Raw raw() const { return raw_; }
 
-  friend Lanes operator+(Lanes a, Lanes b) { return hwy::HWY_NAMESPACE::Add(a.raw_, b.raw_); }
-  friend Lanes operator-(Lanes a, Lanes b) { return hwy::HWY_NAMESPACE::Sub(a.raw_, b.raw_); }
-  friend Lanes operator*(Lanes a, Lanes b) { return hwy::HWY_NAMESPACE::Mul(a.raw_, b.raw_); }
-  friend Lanes operator/(Lanes a, Lanes b) { return hwy::HWY_NAMESPACE::Div(a.raw_, b.raw_); }
+  friend LanesOf operator+(LanesOf a, LanesOf b) { return hwy::HWY_NAMESPACE::Add(a.raw_, b.raw_); }
+  friend LanesOf operator-(LanesOf a, LanesOf b) { return hwy::HWY_NAMESPACE::Sub(a.raw_, b.raw_); }
+  friend LanesOf operator*(LanesOf a, LanesOf b) { return hwy::HWY_NAMESPACE::Mul(a.raw_, b.raw_); }
+  friend LanesOf operator/(LanesOf a, LanesOf b) { return hwy::HWY_NAMESPACE::Div(a.raw_, b.raw_); }
   /// One division for all lanes, and with constants one for all pairs.
-  friend Lanes operator/(Lanes a, double b) { return a * Lanes(1 / b); }
-  friend Lanes operator-(Lanes a) { return hwy::HWY_NAMESPACE::Neg(a.raw_); }
-  Lanes& operator+=(Lanes other) { return *this = *this + other; }
-  Lanes& operator-=(Lanes other) { return *this = *this - other; }
-  Lanes& operator*=(Lanes other) { return *this = *this * other; }
-  Lanes& operator/=(Lanes other) { return *this = *this / other; }
+  friend LanesOf operator/(LanesOf a, double b) { return a * LanesOf(1 / b); }
+  friend LanesOf operator-(LanesOf a) { return hwy::HWY_NAMESPACE::Neg(a.raw_); }
+  LanesOf& operator+=(LanesOf other) { return *this = *this + other; }
+  LanesOf& operator-=(LanesOf other) { return *this = *this - other; }
+  LanesOf& operator*=(LanesOf other) { return *this = *this * other; }
+  LanesOf& operator/=(LanesOf other) { return *this = *this / other; }
 
-  friend LaneMask operator<(Lanes a, Lanes b) { return hwy::HWY_NAMESPACE::Lt(a.raw_, b.raw_); }
-  friend LaneMask operator>(Lanes a, Lanes b) { return hwy::HWY_NAMESPACE::Gt(a.raw_, b.raw_); }
-  friend LaneMask operator<=(Lanes a, Lanes b) { return hwy::HWY_NAMESPACE::Le(a.raw_, b.raw_); }
-  friend LaneMask operator>=(Lanes a, Lanes b) { return hwy::HWY_NAMESPACE::Ge(a.raw_, b.raw_); }
+  friend LaneMask operator<(LanesOf a, LanesOf b) { return hwy::HWY_NAMESPACE::Lt(a.raw_, b.raw_); }
+  friend LaneMask operator>(LanesOf a, LanesOf b) { return hwy::HWY_NAMESPACE::Gt(a.raw_, b.raw_); }
+  friend LaneMask operator<=(LanesOf a, LanesOf b) {
+    return hwy::HWY_NAMESPACE::Le(a.raw_, b.raw_);
+  }
+  friend LaneMask operator>=(LanesOf a, LanesOf b) {
+    return hwy::HWY_NAMESPACE::Ge(a.raw_, b.raw_);
+  }
 
-  friend Lanes sqrt(Lanes a) { return hwy::HWY_NAMESPACE::Sqrt(a.raw_); }
-  friend Lanes abs(Lanes a) { return hwy::HWY_NAMESPACE::Abs(a.raw_); }
-  friend Lanes exp(Lanes a) { return hwy::HWY_NAMESPACE::Exp(Tag(), a.raw_); }
-  friend Lanes log(Lanes a) { return hwy::HWY_NAMESPACE::Log(Tag(), a.raw_); }
-  friend Lanes min(Lanes a, Lanes b) { return hwy::HWY_NAMESPACE::Min(a.raw_, b.raw_); }
-  friend Lanes max(Lanes a, Lanes b) { return hwy::HWY_NAMESPACE::Max(a.raw_, b.raw_); }
-  friend Lanes select(LaneMask condition, Lanes yes, Lanes no) {
+  friend LanesOf sqrt(LanesOf a) { return hwy::HWY_NAMESPACE::Sqrt(a.raw_); }
+  friend LanesOf abs(LanesOf a) { return hwy::HWY_NAMESPACE::Abs(a.raw_); }
+  friend LanesOf exp(LanesOf a) { return hwy::HWY_NAMESPACE::Exp(Tag(), a.raw_); }
+  friend LanesOf log(LanesOf a) { return hwy::HWY_NAMESPACE::Log(Tag(), a.raw_); }
+  friend LanesOf min(LanesOf a, LanesOf b) { return hwy::HWY_NAMESPACE::Min(a.raw_, b.raw_); }
+  friend LanesOf max(LanesOf a, LanesOf b) { return hwy::HWY_NAMESPACE::Max(a.raw_, b.raw_); }
+  friend LanesOf select(LaneMask condition, LanesOf yes, LanesOf no) {
     return hwy::HWY_NAMESPACE::IfThenElse(condition.raw(), yes.raw_, no.raw_);
   }
 
@@ -80,9 +90,16 @@ class Lanes {
   Raw raw_;
 };
 
+using Lanes = LanesOf<false>;
+using CommonLanes = LanesOf<true>;
+
 }  // namespace HWY_NAMESPACE
 
+using HWY_NAMESPACE::CommonLanes;
 using HWY_NAMESPACE::LaneMask;
 using HWY_NAMESPACE::Lanes;
+
+template <>
+constexpr bool meets_common_laws<CommonLanes> = true;
 
 }  // namespace driftless

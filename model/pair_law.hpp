@@ -42,6 +42,11 @@ class PairLaw {
   bool has_conduction() const {
     return heat_form_ != HeatForm::none && coefficients_.conduction != 0;
   }
+  /// Whether both heat capacities are constant, no coefficient has a factor and it is not a field.
+  bool is_common() const {
+    return i_.state.has_constant_heat_capacity() && j_.state.has_constant_heat_capacity() &&
+           friction_factor_.is_constant() && conduction_factor_.is_constant() && !uniform_;
+  }
   /// The largest range of the terms that act; 0 if none does or it is a field.
   double range() const;
   double reduced_mass() const { return reduced_mass_; }
@@ -87,13 +92,13 @@ class PairLaw {
   /// the temperatures is not in it, nor in the potential: see thermal_shape().
   template <class V>
   V repulsive_force(V distance) const {
-    if (uniform_) return V(coefficients_.repulsion);
+    if (!meets_common_laws<V> && uniform_) return V(coefficients_.repulsion);
     return coefficients_.repulsion * depth(distance, coefficients_.repulsion_range);
   }
   /// psi(r) = (a r_c/2)(1 - r/r_c)^2 inside the range.
   template <class V>
   V potential(V distance) const {
-    if (uniform_) return -coefficients_.repulsion * distance;
+    if (!meets_common_laws<V> && uniform_) return -coefficients_.repulsion * distance;
     const V x = depth(distance, coefficients_.repulsion_range);
     return 0.5 * coefficients_.repulsion * coefficients_.repulsion_range * x * x;
   }
@@ -134,7 +139,7 @@ class PairLaw {
   /// is constant in the energies for the closure `friction`, Gamma for the closure `noise`.
   template <class V>
   FrictionLaw<V> friction(const Pair<V>& pair) const {
-    if (!friction_factor_.is_constant()) {
+    if (has_factor<V>(friction_factor_)) {
       return factored_friction(pair.r, pair.w_friction, pair.u_i, pair.u_j);
     }
     const V theta_i = temperature_i(pair), theta_j = temperature_j(pair);
@@ -153,7 +158,7 @@ class PairLaw {
   /// d ln Gamma/du of either. The noise-induced friction is Gamma^2/2 times their sum.
   template <class V>
   AmplitudeSlopes<V> friction_noise_slopes(const Pair<V>& pair) const {
-    if (!friction_factor_.is_constant()) return factored_slopes(pair.r, pair.u_i, pair.u_j);
+    if (has_factor<V>(friction_factor_)) return factored_slopes(pair.r, pair.u_i, pair.u_j);
     if (closure_ == FrictionClosure::noise) return {V(0), V(0)};
     const V mean = mean_temperature(pair);
     const auto slope = [&](const EquationOfState& state, V u) {
@@ -166,7 +171,7 @@ class PairLaw {
   /// The conduction law of a pair in its present state.
   template <class V>
   ConductionLaw<V> conduction(const Pair<V>& pair) const {
-    if (!conduction_factor_.is_constant()) {
+    if (has_factor<V>(conduction_factor_)) {
       return factored_conduction(pair.r, pair.w_heat, pair.u_i, pair.u_j);
     }
     const V theta_i = temperature_i(pair), theta_j = temperature_j(pair);
@@ -185,7 +190,7 @@ class PairLaw {
   template <class V>
   V conductivity(const Pair<V>& pair) const {
     V coefficient = coefficients_.conduction * pair.w_heat;
-    if (!conduction_factor_.is_constant()) coefficient *= factor(pair.r, pair.u_i, pair.u_j);
+    if (has_factor<V>(conduction_factor_)) coefficient *= factor(pair.r, pair.u_i, pair.u_j);
     if (heat_form_ != HeatForm::inverse_temperature) return coefficient;
     return coefficient / (temperature_i(pair) * temperature_j(pair));
   }
@@ -193,7 +198,7 @@ class PairLaw {
   /// d ln Lambda/du of either. The noise-induced heat rate is Lambda^2 times their difference.
   template <class V>
   AmplitudeSlopes<V> heat_noise_slopes(const Pair<V>& pair) const {
-    if (!conduction_factor_.is_constant()) return factored_heat_slopes(pair.r, pair.u_i, pair.u_j);
+    if (has_factor<V>(conduction_factor_)) return factored_heat_slopes(pair.r, pair.u_i, pair.u_j);
     if (heat_form_ != HeatForm::temperature) return {V(0), V(0)};
     const auto slope = [&](const EquationOfState& state, V u) {
       return 0.5 * state.inverse_heat_capacity(u) / state.temperature(u);
@@ -202,6 +207,10 @@ class PairLaw {
   }
 
  private:
+  template <class V>
+  static bool has_factor(const CoefficientLaw& law) {
+    return !meets_common_laws<V> && !law.is_constant();
+  }
   template <class V>
   PairTemperatures<V> temperatures(V u_i, V u_j) const {
     return {i_.state.temperature(u_i), j_.state.temperature(u_j),
