@@ -6,7 +6,6 @@
 
 #include "model/lanes.hpp"
 #include "model/pair.hpp"
-#include "model/pair_law.hpp"
 
 namespace driftless {
 
@@ -14,6 +13,7 @@ namespace driftless {
 /// object are parts of one piece of memory, each padded to whole lanes of any processor.
 struct PairArrays {
   const PairLaw* law;  ///< of all these pairs
+  bool common_laws;    ///< whether kernels meet no laws but common ones, the first species' included
   double *r, *w_friction, *w_heat, *v, *u_i, *u_j, *noise, *heat_noise, *uniform, *heat_uniform;
   double *trial_v, *trial_u_i, *trial_u_j, *trial_dv_i, *trial_dv_j;
   double *momentum, *energy_i, *energy_j;  ///< the answer
@@ -102,7 +102,7 @@ class PairKernel {
     const auto& kernel = *static_cast<const Kernel*>(called);
     if constexpr (!std::is_invocable_v<Kernel, Pair<Lanes>>) {
       loop<double>(kernel, arrays, from, to);
-    } else if (arrays.law->is_common()) {
+    } else if (arrays.common_laws) {
       loop<CommonLanes>(kernel, arrays, from, to);
     } else {
       loop<Lanes>(kernel, arrays, from, to);
@@ -114,7 +114,7 @@ class PairKernel {
     const auto& kernel = *static_cast<const Kernel*>(called);
     if constexpr (!std::is_invocable_v<Kernel, Pair<Lanes>, TrialPair<Lanes>>) {
       loop_of_trials<double>(kernel, arrays, from, to);
-    } else if (arrays.law->is_common()) {
+    } else if (arrays.common_laws) {
       loop_of_trials<CommonLanes>(kernel, arrays, from, to);
     } else {
       loop_of_trials<Lanes>(kernel, arrays, from, to);

@@ -63,9 +63,9 @@ PassSeconds& PassSeconds::operator+=(const PassSeconds& other) {
 
 void PairPass::reserve(std::size_t pairs) {
   if (pairs <= capacity_) return;
-  // All members but the law.
-  constexpr std::size_t columns = sizeof(PairArrays) / sizeof(double*) - 1;
-  static_assert(sizeof(PairArrays) == (columns + 1) * sizeof(double*));
+  // All members but what is known of the law.
+  constexpr std::size_t columns = sizeof(PairArrays) / sizeof(double*) - 2;
+  static_assert(sizeof(PairArrays) == (columns + 2) * sizeof(double*));
   capacity_ = (pairs + 7) / 8 * 8;
   const std::size_t stride = capacity_ + 2 * 8;  // lanes of any processor, and no two columns alike
   memory_.assign(columns * stride, 0.0);

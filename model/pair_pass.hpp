@@ -88,6 +88,7 @@ class PairPass {
   void trial(const PassParticles& particles);
   void run(const PairKernel& kernel, std::size_t from, std::size_t to) {
     const PassClock clock(part(&PassSeconds::arithmetic));
+    arrays_.common_laws = arrays_.law->is_common() && fluid_->law(0, 0).is_common();
     kernel.run(arrays_, from, to);
   }
   /// Adds what the pairs exchange to the particles' sums, one pair after the other.
