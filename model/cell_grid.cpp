@@ -51,47 +51,99 @@ void CellGrid::sort(const State& state, const Threads& threads) {
   particles_ = state.size();
   // Vectors of single precision are read beyond the end.
   const std::size_t padded = state.size() + 2 * Lanes::count();
-  cell_.resize(state.size());
+  cell_or_number_.resize(state.size());
   entries_.resize(state.size());
   species_.resize(state.species.size());
   position_.resize(padded);
   for (auto& values : rough_) values.resize(padded);
 
-  // Every thread counts a share of the particles, and has its own places in each cell.
   const auto cells = static_cast<std::size_t>(count_.prod());
-  const std::size_t shares = threads.count();
-  const std::size_t tasks[] = {shares};
-  const auto share = [&](std::size_t n) { return state.size() * n / shares; };
-  next_.resize(shares * cells);
-  threads.phases(tasks, [&](unsigned, std::size_t, std::size_t n) {
-    std::uint32_t* const counts = next_.data() + n * cells;
-    std::fill_n(counts, cells, 0);
-    assign(state, share(n), share(n + 1));
-    for (std::size_t i = share(n); i < share(n + 1); ++i) ++counts[cell_[i]];
-  });
+  next_.resize(cells);
   begin_.resize(cells + 1);
-  std::uint32_t before = 0;
-  for (std::size_t c = 0; c < cells; ++c) {
-    begin_[c] = before;
-    for (std::size_t n = 0; n < shares; ++n) {
-      before += std::exchange(next_[n * cells + c], before);
+  begin_[cells] = static_cast<std::uint32_t>(state.size());
+  // Every thread hands a share of the particles out to parts of the cells, a part being one
+  // thread's: no two threads write side by side.
+  if (parts_ != threads.count()) cut_parts(threads.count());
+  handed_out_.resize(parts_ > 1 ? state.size() : 0);
+  part_end_.resize(parts_ * parts_);
+  const std::size_t tasks[] = {parts_, parts_};
+  threads.phases(tasks, [&](unsigned, std::size_t phase, std::size_t task) {
+    if (phase == 0) {
+      hand_out(state, task);
+    } else {
+      fill_cells(state, task);
+    }
+  });
+}
+
+void CellGrid::cut_parts(std::size_t parts) {
+  parts_ = parts;
+  part_of_cell_.resize(next_.size());
+  for (std::size_t part = 0; part < parts; ++part) {
+    std::fill(part_of_cell_.begin() + static_cast<std::ptrdiff_t>(part_begin(part)),
+              part_of_cell_.begin() + static_cast<std::ptrdiff_t>(part_begin(part + 1)), part);
+  }
+}
+
+void CellGrid::hand_out(const State& state, std::size_t share) {
+  const std::size_t first = share_begin(share), last = share_begin(share + 1);
+  assign(state, first, last);
+  if (parts_ == 1) return;
+  // Counted in memory of its own: threads that count side by side hold each other up.
+  std::vector<std::uint32_t> end(parts_ + 32);
+  for (std::size_t i = first; i < last; ++i) ++end[part_of(cell_or_number_[i])];
+  auto before = static_cast<std::uint32_t>(first);
+  for (std::size_t part = 0; part < parts_; ++part) before += std::exchange(end[part], before);
+  for (std::size_t i = first; i < last; ++i) {
+    handed_out_[end[part_of(cell_or_number_[i])]++] = {state.id[i], static_cast<std::uint32_t>(i),
+                                                       cell_or_number_[i]};
+  }
+  std::copy_n(end.begin(), parts_, &part_end_[share * parts_]);
+}
+
+std::size_t CellGrid::part_size(std::size_t share, std::size_t part) const {
+  const std::uint32_t* const end = &part_end_[share * parts_];
+  return end[part] - (part > 0 ? end[part - 1] : share_begin(share));
+}
+
+template <class Visit>
+void CellGrid::for_each_of_part(const State& state, std::size_t part, Visit&& visit) const {
+  if (parts_ == 1) {
+    for (std::uint32_t i = 0; i < state.size(); ++i) visit(i, state.id[i], cell_or_number_[i]);
+    return;
+  }
+  for (std::size_t share = 0; share < parts_; ++share) {
+    const std::uint32_t end = part_end_[share * parts_ + part];
+    for (auto n = end - static_cast<std::uint32_t>(part_size(share, part)); n < end; ++n) {
+      visit(n, handed_out_[n].id, handed_out_[n].cell_or_number);
     }
   }
-  begin_[cells] = before;
-  threads.phases(tasks, [&](unsigned, std::size_t, std::size_t n) {
-    std::uint32_t* const next = next_.data() + n * cells;
-    for (std::size_t i = share(n); i < share(n + 1); ++i) {
-      entries_[next[cell_[i]]++] = {static_cast<std::uint32_t>(i), state.id[i]};
+}
+
+void CellGrid::fill_cells(const State& state, std::size_t part) {
+  const std::size_t first = part_begin(part), last = part_begin(part + 1);
+  std::uint32_t before = 0;
+  for (std::size_t share = 0; parts_ > 1 && share < parts_; ++share) {
+    for (std::size_t n = 0; n < part; ++n) {
+      before += static_cast<std::uint32_t>(part_size(share, n));
     }
+  }
+  const std::uint32_t from = before;
+  std::fill_n(next_.begin() + static_cast<std::ptrdiff_t>(first), last - first, 0);
+  for_each_of_part(state, part, [&](auto, auto, auto cell) { ++next_[cell]; });
+  for (std::size_t c = first; c < last; ++c) {
+    begin_[c] = before;
+    before += std::exchange(next_[c], before);
+  }
+  for_each_of_part(state, part, [&](std::uint32_t n, std::uint32_t id, std::uint32_t cell) {
+    entries_[next_[cell]++] = {n, id};
   });
   const auto by_id = [](const Entry& a, const Entry& b) { return a.id < b.id; };
-  threads.ranges(cells, [&](std::size_t first, std::size_t last) {
-    for (std::size_t c = first; c < last; ++c) {
-      const auto from = entries_.begin() + begin_[c], to = entries_.begin() + begin_[c + 1];
-      if (!std::is_sorted(from, to, by_id)) std::sort(from, to, by_id);
-    }
-    gather(state, begin_[first], begin_[last]);
-  });
+  for (std::size_t c = first; c < last; ++c) {
+    const auto begin = entries_.begin() + begin_[c], end = entries_.begin() + next_[c];
+    if (!std::is_sorted(begin, end, by_id)) std::sort(begin, end, by_id);
+  }
+  gather(state, from, before);
 }
 
 void CellGrid::assign(const State& state, std::size_t begin, std::size_t end) {
@@ -100,13 +152,21 @@ void CellGrid::assign(const State& state, std::size_t begin, std::size_t end) {
     const Eigen::Array3i cell = (state.position[i].array() * scale).cast<int>();
     // Rounding may lead out of the last cell.
     const Eigen::Array3i inside = cell.min(count_.array() - 1);
-    cell_[i] = static_cast<std::uint32_t>(index(inside[0], inside[1], inside[2]));
+    cell_or_number_[i] = static_cast<std::uint32_t>(index(inside[0], inside[1], inside[2]));
   }
 }
 
 void CellGrid::gather(const State& state, std::size_t begin, std::size_t end) {
   for (std::size_t n = begin; n < end; ++n) {
-    const std::uint32_t place = entries_[n].place;
+    std::uint32_t& place = entries_[n].place;  // at first where it has been handed out
+    const auto number = static_cast<std::uint32_t>(n);
+    if (parts_ > 1) {
+      HandedOut& from = handed_out_[place];
+      place = from.place;
+      from.cell_or_number = number;
+    } else {
+      cell_or_number_[place] = number;
+    }
     if (!species_.empty()) species_[n] = state.species[place];
     const Vector& position = state.position[place];
     position_[n] = {position[0], position[1], position[2], 0};

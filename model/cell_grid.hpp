@@ -59,12 +59,32 @@ class CellGrid {
   std::uint8_t species(std::size_t n) const { return species_.empty() ? 0 : species_[n]; }
   const std::vector<Quadruple>& position() const { return position_; }
   const std::array<std::vector<float>, 3>& rough_position() const { return rough_; }
+  /// The way back to storage: visit(place, number in the order of cells) for a share of the places,
+  /// one thread's. Numbers jump, places less so: reading here and there costs less than writing.
+  std::size_t shares() const { return parts_; }
+  template <class Visit>
+  void for_each_of_share(std::size_t share, Visit&& visit) const;
   double rough_margin() const { return 4e-7 * lengths_.maxCoeff(); }
 
  private:
+  struct HandedOut {
+    std::uint32_t id, place, cell_or_number;
+  };
+
   void cut(double range);
   void assign(const State& state, std::size_t begin, std::size_t end);
   void gather(const State& state, std::size_t begin, std::size_t end);
+  void cut_parts(std::size_t parts);
+  /// Puts a share of the storage in the order of parts of the cells.
+  void hand_out(const State& state, std::size_t share);
+  /// Sorts the particles of a part of the cells.
+  void fill_cells(const State& state, std::size_t part);
+  template <class Visit>
+  void for_each_of_part(const State& state, std::size_t part, Visit&& visit) const;
+  std::size_t share_begin(std::size_t share) const { return particles_ * share / parts_; }
+  std::size_t part_begin(std::size_t part) const { return next_.size() * part / parts_; }
+  std::size_t part_of(std::uint32_t cell) const { return part_of_cell_[cell]; }
+  std::size_t part_size(std::size_t share, std::size_t part) const;
 
   Box box_;
   Vector lengths_;
@@ -72,11 +92,27 @@ class CellGrid {
   bool single_ = false;
   Eigen::Vector3i count_;
   std::vector<std::uint32_t> begin_, next_;
-  std::vector<std::uint32_t> cell_;  ///< of each place in storage
+  std::size_t parts_ = 0;  ///< of storage and of cells, one for each thread
+  std::vector<std::uint16_t> part_of_cell_;
+  /// Each share of the storage in the order of parts; with one part storage stays as it is.
+  std::vector<HandedOut> handed_out_;
+  std::vector<std::uint32_t> part_end_;        ///< of each share's parts there
+  std::vector<std::uint32_t> cell_or_number_;  ///< of each place in storage
   std::vector<Entry> entries_;
   std::vector<std::uint8_t> species_;  ///< empty: all 0
   std::vector<Quadruple> position_;
   std::array<std::vector<float>, 3> rough_;
 };
+
+template <class Visit>
+void CellGrid::for_each_of_share(std::size_t share, Visit&& visit) const {
+  for (std::size_t n = share_begin(share); n < share_begin(share + 1); ++n) {
+    if (parts_ > 1) {
+      visit(handed_out_[n].place, handed_out_[n].cell_or_number);
+    } else {
+      visit(n, cell_or_number_[n]);
+    }
+  }
+}
 
 }  // namespace driftless

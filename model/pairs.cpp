@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "model/lanes.hpp"
 
@@ -331,6 +332,7 @@ PairBlocks::PairBlocks(const CellGrid& cells, double range, unsigned threads, st
     const std::size_t for_cache = particles_a_block / a_tile;
     add_blocks(alike, std::max<std::size_t>(1, std::min(for_all, for_cache)));
   }
+  order_search();
 }
 
 void PairBlocks::add_blocks(const std::vector<PairBlock::Tile>& tiles, std::size_t per_block) {
@@ -344,10 +346,25 @@ void PairBlocks::add_blocks(const std::vector<PairBlock::Tile>& tiles, std::size
   }
 }
 
+// So that a thread finds the pairs of those blocks that it visits later, colour by colour.
+void PairBlocks::order_search() {
+  std::vector<double> place(blocks_.size());  // in the colour, which threads share in this order
+  for (std::size_t colour = 0; colour < colours_.size(); ++colour) {
+    const auto count = static_cast<double>(colours_[colour]);
+    for (std::size_t n = 0; n < colours_[colour]; ++n) {
+      place[first_[colour] + n] = (static_cast<double>(n) + 0.5) / count;
+    }
+  }
+  search_order_.resize(blocks_.size());
+  std::iota(search_order_.begin(), search_order_.end(), std::size_t{0});
+  std::stable_sort(search_order_.begin(), search_order_.end(),
+                   [&](std::size_t a, std::size_t b) { return place[a] < place[b]; });
+}
+
 void PairBlocks::find(const CellGrid& cells, const Threads& threads) {
   const std::size_t blocks[] = {blocks_.size()};
   threads.phases(blocks, [&](unsigned, std::size_t, std::size_t n) {
-    PairBlock& block = blocks_[n];
+    PairBlock& block = blocks_[search_order_[n]];
     block.grouped = false;
     block.kept.clear();
     // Found in a place with room for all candidates, kept in one as large as what is found.

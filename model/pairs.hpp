@@ -94,6 +94,7 @@ class PairBlocks {
 
  private:
   void add_blocks(const std::vector<PairBlock::Tile>& tiles, std::size_t per_block);
+  void order_search();
 
   void search_block(PairIndices& found, const PairBlock& block, const CellGrid& cells) const;
   void sort_by_kind(PairBlock& block, const CellGrid& cells) const;
@@ -106,7 +107,8 @@ class PairBlocks {
   bool single_;
   std::vector<PairBlock> blocks_;
   std::vector<std::size_t> colours_, first_;
-  std::vector<std::uint64_t> used_;  ///< groups of each particle, a bit each
+  std::vector<std::size_t> search_order_;  ///< of the blocks
+  std::vector<std::uint64_t> used_;        ///< groups of each particle, a bit each
   PairIndices by_ids_;
   PairGroups groups_by_ids_;
   bool sorted_by_ids_ = false;

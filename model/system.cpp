@@ -98,19 +98,21 @@ void System::find_pairs() {
   pairs_version_ = positions_version_;
 }
 
-void System::gather_motion(const Motion& motion, std::vector<Quadruple>& gathered) const {
+void System::make_room(std::vector<Quadruple>& gathered) const {
   gathered.resize(size() + BoundaryContacts::numbers);
   std::fill(gathered.begin() + static_cast<std::ptrdiff_t>(size()), gathered.end(),
             boundary_motion);
+}
+
+void System::gather_motion(const Motion& motion, std::vector<Quadruple>& gathered,
+                           std::size_t begin, std::size_t end) const {
   const bool isothermal = fluid_.isothermal();
   const double bath = fluid_.bath_energy();
-  for_each_particle([&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const std::size_t place = cells_.place(n);
-      const Vector& v = motion.velocity[place];
-      gathered[n] = {v[0], v[1], v[2], isothermal ? bath : motion.internal_energy[place]};
-    }
-  });
+  for (std::size_t n = begin; n < end; ++n) {
+    const std::size_t place = cells_.place(n);
+    const Vector& v = motion.velocity[place];
+    gathered[n] = {v[0], v[1], v[2], isothermal ? bath : motion.internal_energy[place]};
+  }
 }
 
 void System::count_visit(bool noise, bool uniforms) {
@@ -143,12 +145,16 @@ void System::work_in_kept(PairPass& pass, PairBlock& block, std::size_t first, S
 void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total, Stage stage,
                         Rounds rounds) {
   find_pairs();
-  gather_motion(state_, motion_);
-  if (trial) gather_motion(*trial, trial_);
+  make_room(motion_);
+  if (trial) make_room(trial_);
+  const auto gather = [&](std::size_t begin, std::size_t end) {
+    gather_motion(state_, motion_, begin, end);
+    if (trial) gather_motion(*trial, trial_, begin, end);
+  };
   const PassParticles particles{motion_.data(), trial_.data(), nullptr, nullptr};
   const bool again = rounds == Rounds::several;
   const bool kept = again && is_kept(stage);
-  for_each_chunk([&](PairPass& pass, PairBlock& block, std::size_t first, std::size_t count) {
+  const auto visit = [&](PairPass& pass, PairBlock& block, std::size_t first, std::size_t count) {
     if (again) work_in_kept(pass, block, first, stage);
     if (!kept || !keeps_geometry()) pass.geometry(0, count);
     if (!kept) pass.draw_normals(noise_, stage);
@@ -156,7 +162,8 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
     pass.motion(particles, 0, count);
     if (trial) pass.trial(particles);
     pass.run(kernel, 0, count);
-  });
+  };
+  for_each_chunk(visit, gather);
   for_each_contact_chunk([&](PairPass& pass, std::size_t boundary, std::size_t count) {
     pass.draw_contact_normals(noise_, stage, BoundaryContacts::id(boundary));
     pass.draw_no_uniforms();
@@ -171,14 +178,25 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
 }
 
 void System::for_each_chunk(
-    FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer) {
+    FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer,
+    FunctionReference<void(std::size_t, std::size_t)> prepare) {
   summing_ = true;
-  threads_.phases(pairs_.colours(), [&](unsigned thread, std::size_t colour, std::size_t task) {
-    for_each_run(passes_[thread], pairs_.block(colour, task),
-                 [&](PairPass& pass, PairBlock& block, std::size_t first, std::size_t count) {
-                   answer(pass, block, first, count);
-                   pass.add(sums_.data());
-                 });
+  const auto colours = pairs_.colours();
+  std::vector<std::size_t> tasks(1, threads_.count());
+  tasks.insert(tasks.end(), colours.begin(), colours.end());
+  std::fill(sums_.begin() + static_cast<std::ptrdiff_t>(size()), sums_.end(), Quadruple{});
+  const auto visit = [&](PairPass& pass, PairBlock& block, std::size_t first, std::size_t count) {
+    answer(pass, block, first, count);
+    pass.add(sums_.data());
+  };
+  threads_.phases(tasks, [&](unsigned thread, std::size_t phase, std::size_t task) {
+    if (phase > 0) {
+      for_each_run(passes_[thread], pairs_.block(phase - 1, task), visit);
+      return;
+    }
+    const std::size_t begin = size() * task / tasks[0], end = size() * (task + 1) / tasks[0];
+    std::fill_n(sums_.begin() + static_cast<std::ptrdiff_t>(begin), end - begin, Quadruple{});
+    prepare(begin, end);
   });
 }
 
@@ -218,19 +236,17 @@ void System::scatter_sums(std::vector<Vector>& momentum, std::vector<double>& en
                           Surroundings& surroundings) {
   momentum.resize(size());
   energy.resize(size());
-  for_each_particle([&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const std::size_t place = cells_.place(n);
-      momentum[place] = Vector(sums_[n].x, sums_[n].y, sums_[n].z);
-      energy[place] = sums_[n].energy;
-      sums_[n] = {};  // ready for the next
-    }
+  const std::size_t shares[] = {cells_.shares()};
+  threads_.phases(shares, [&](unsigned, std::size_t, std::size_t share) {
+    cells_.for_each_of_share(share, [&](std::size_t i, std::size_t n) {
+      momentum[i] = Vector(sums_[n].x, sums_[n].y, sums_[n].z);
+      energy[i] = sums_[n].energy;
+    });
   });
   surroundings = {};
   for (std::size_t number = 0; contacts_.any() && number < BoundaryContacts::numbers; ++number) {
     const auto& sum = sums_[size() + number];
     surroundings[BoundaryContacts::boundary(number)] += {Vector(sum.x, sum.y, sum.z), sum.energy};
-    sums_[size() + number] = {};
   }
   summing_ = false;
 }
@@ -385,7 +401,9 @@ void System::sweep_contacts(const PassParticles& particles, const PairKernel& ke
 
 void System::sweep(const PairKernel& kernel, const Sweep& how) {
   find_pairs();
-  gather_motion(state_, motion_);
+  make_room(motion_);
+  for_each_particle(
+      [&](std::size_t begin, std::size_t end) { gather_motion(state_, motion_, begin, end); });
   received_.resize(BoundaryContacts::numbers);
   PassParticles particles{motion_.data(), nullptr, nullptr, motion_.data(), received_.data()};
   if (how.energies == SweepEnergies::frozen) {
@@ -399,14 +417,14 @@ void System::sweep(const PairKernel& kernel, const Sweep& how) {
   if (how.order == SweepOrder::forward) sweep_contacts(particles, kernel, how, failed);
   std::atomic<bool> sound = true;
   ++energies_version_;
-  for_each_particle([&](std::size_t begin, std::size_t end) {
+  const std::size_t shares[] = {cells_.shares()};
+  threads_.phases(shares, [&](unsigned, std::size_t, std::size_t share) {
     bool all = true;
-    for (std::size_t n = begin; n < end; ++n) {
-      const std::size_t place = cells_.place(n);
-      state_.velocity[place] = Vector(motion_[n].x, motion_[n].y, motion_[n].z);
-      if (!fluid_.isothermal()) state_.internal_energy[place] = motion_[n].energy;
-      all = all & is_sound(place);
-    }
+    cells_.for_each_of_share(share, [&](std::size_t i, std::size_t n) {
+      state_.velocity[i] = Vector(motion_[n].x, motion_[n].y, motion_[n].z);
+      if (!fluid_.isothermal()) state_.internal_energy[i] = motion_[n].energy;
+      all = all & is_sound(i);
+    });
     if (!all) sound = false;
   });
   count_visit(true, how.uniforms);

@@ -167,10 +167,12 @@ class System {
   /// Makes cells, blocks and memory for as many particles and threads as there are.
   void cut_cells();
   void find_pairs();
+  static constexpr auto nothing_to_prepare = [](std::size_t, std::size_t) {};
   /// Sums what pairs exchange: answer(pass, block, first, count) has the pass find it for a part of
-  /// a block's pairs.
+  /// a block's pairs, after prepare(begin, end) for parts of the particles in the order of cells.
   void for_each_chunk(
-      FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer);
+      FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer,
+      FunctionReference<void(std::size_t, std::size_t)> prepare = nothing_to_prepare);
   /// visit(pass, block, first, count) when the pass has taken a part of a block's pairs, of one
   /// kind and no more than stay in the cache.
   void for_each_run(PairPass& pass, PairBlock& block,
@@ -196,7 +198,9 @@ class System {
   /// Has a pass work in what is kept of a block.
   void work_in_kept(PairPass& pass, PairBlock& block, std::size_t first, Stage stage) const;
   bool keeps_geometry() const;
-  void gather_motion(const Motion& motion, std::vector<Quadruple>& gathered) const;
+  void make_room(std::vector<Quadruple>& gathered) const;
+  void gather_motion(const Motion& motion, std::vector<Quadruple>& gathered, std::size_t begin,
+                     std::size_t end) const;
   void count_visit(bool noise, bool uniforms);
   void renew_conservative();
   /// The factors chi of the present positions, and the force with what follows the temperatures.
