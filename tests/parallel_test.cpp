@@ -89,6 +89,35 @@ TEST(Kernels, AnswerInLanesAsTheyDoOneByOne) {
   }
 }
 
+/// The temperature of the first species, whose heat capacity is not constant where that of the pair
+/// may be.
+template <class V>
+Transfer<V> trace_of_first_species(const Fluid& fluid, const Pair<V>& p) {
+  const V theta = fluid.temperature(p.u_i);
+  return {0.01 * p.v * theta, 0.01 * theta, -0.01 * theta};
+}
+
+TEST(Kernels, SeeTheLawsOfTheFirstSpeciesInPairsOfOthers) {
+  auto f = wide_fluid(FrictionClosure::noise);
+  f.heat_capacity_slope = 40;
+  f.further_species = {{.mass = 1, .heat_capacity = 60}};
+  State start = wide_state(f);
+  for (std::size_t i = 0; i < start.size(); ++i) start.species.push_back(i % 2);
+  System system = wide_system(f, start);
+  const Fluid& fluid = system.fluid();
+  Exchange lanes, single;
+  system.accumulate([&](const auto& pair) { return trace_of_first_species(fluid, pair); }, lanes);
+  system.accumulate([&](const Pair<double>& pair) { return trace_of_first_species(fluid, pair); },
+                    single);
+  double largest = 0;
+  for (std::size_t i = 0; i < system.size(); ++i) {
+    EXPECT_NEAR(lanes.energy[i], single.energy[i], 1e-11);
+    EXPECT_LT((lanes.momentum[i] - single.momentum[i]).norm(), 1e-11);
+    largest = std::max(largest, std::abs(single.energy[i]));
+  }
+  EXPECT_GT(largest, 1e-3);
+}
+
 /// A sweep over pairs in a given order, by hand.
 State swept(const System& system, const std::vector<System::Geometry>& pairs, const Sweep& how) {
   const Noise noise(5, 1);
