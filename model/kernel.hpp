@@ -13,7 +13,7 @@ namespace driftless {
 /// object are parts of one piece of memory, each padded to whole lanes of any processor.
 struct PairArrays {
   const PairLaw* law;  ///< of all these pairs
-  bool common_laws;    ///< whether kernels meet no laws but common ones, the first species' included
+  bool common_laws;  ///< whether kernels meet no laws but common ones, the first species' included
   double *r, *w_friction, *w_heat, *v, *u_i, *u_j, *noise, *heat_noise, *uniform, *heat_uniform;
   double *trial_v, *trial_u_i, *trial_u_j, *trial_dv_i, *trial_dv_j;
   double *momentum, *energy_i, *energy_j;  ///< the answer
