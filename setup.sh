@@ -2,7 +2,7 @@
 # Installs what is missing, then configures and builds. run.sh and test.sh call it each time: where
 # nothing is missing and nothing changed, it says nothing and takes a moment.
 #
-# usage: setup.sh run             the program, into build/
+# usage: setup.sh run [PRESET]    the program
 #        setup.sh test [PRESET]   program, tests and benchmarks, by a preset of CMakePresets.json
 #        setup.sh check           only the tools that read the sources (formatter, shell linter)
 #

@@ -15,7 +15,7 @@ inline double select(bool condition, double yes, double no) { return condition ?
 /// Whether numbers of a type promise to meet no laws but the common ones (PairLaw::is_common):
 /// what the others need then stands in no loop.
 template <class V>
-constexpr bool meets_common_laws = false;
+inline constexpr bool meets_common_laws = false;
 
 // The number of lanes follows the instructions that a file is compiled for. The namespace does too,
 // so that files compiled for different ones can be linked together.
@@ -100,6 +100,6 @@ using HWY_NAMESPACE::LaneMask;
 using HWY_NAMESPACE::Lanes;
 
 template <>
-constexpr bool meets_common_laws<CommonLanes> = true;
+inline constexpr bool meets_common_laws<CommonLanes> = true;
 
 }  // namespace driftless
