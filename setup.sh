@@ -90,6 +90,7 @@ need_to_run() {
   need libboost-dev has_header boost/random.hpp
   need librandom123-dev has_header Random123/philox.h
   need libhwy-dev has_header hwy/highway.h
+  need libtbb-dev has_header tbb/parallel_for.h
   need nlohmann-json3-dev has_header nlohmann/json.hpp
   need libcli11-dev has_header CLI/CLI.hpp
   need libfmt-dev has_header fmt/core.h

@@ -41,7 +41,7 @@ function(driftless_add_library target folder)
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/driftless>)
   target_include_directories(${target} SYSTEM PUBLIC $<BUILD_INTERFACE:${RANDOM123_INCLUDE_DIR}>)
   target_link_libraries(${target} PUBLIC Eigen3::Eigen hwy::hwy
-    PRIVATE Boost::headers Threads::Threads ${CMAKE_DL_LIBS})
+    PRIVATE Boost::headers TBB::tbb ${CMAKE_DL_LIBS})
   # What crosses the border of the library must not depend on the processor: the alignment of
   # Eigen's memory would. Highway asks for two instruction sets more than x86-64-v3 and -v4 promise,
   # and Highway 1.0 refuses processors that have even more.

@@ -1,202 +1,76 @@
 #include "model/threads.hpp"
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <cstdint>
+#include <deque>
 #include <exception>
-#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace driftless {
+
 namespace {
-
-void pause() {
-#if defined(__x86_64__)
-  __builtin_ia32_pause();
-#else
-  std::this_thread::yield();
-#endif
-}
-
-constexpr unsigned pauses = 1500;  // some ten microseconds to a hundred
-
-/// A number that belongs to one job, in one atomic word: whoever comes late, with an earlier job in
-/// mind, sees that it is not meant.
-class JobNumber {
- public:
-  static std::uint64_t word(std::uint32_t job, std::size_t number) {
-    return std::uint64_t{job} << 32 | static_cast<std::uint32_t>(number);
-  }
-  static bool is_of(std::uint64_t word, std::uint32_t job) { return word >> 32 == job; }
-  static std::size_t number(std::uint64_t word) { return word & 0xffffffffU; }
-
-  void set(std::uint32_t job, std::size_t number) {
-    word_.store(word(job, number), std::memory_order_relaxed);
-  }
-  std::uint64_t get() const { return word_.load(std::memory_order_acquire); }
-  /// Who waits for `last` hears of it.
-  void increase(std::uint32_t job, std::size_t last) {
-    if (word_.fetch_add(1, std::memory_order_acq_rel) + 1 == word(job, last)) word_.notify_all();
-  }
-  /// Until the number is `last` or the job is over. Who waits long may be waiting for somebody who
-  /// has no core, and leaves its own to others.
-  void wait_for(std::uint32_t job, std::size_t last) const {
-    std::uint64_t seen = get();
-    for (unsigned n = 0; seen != word(job, last) && is_of(seen, job); ++n, seen = get()) {
-      if (n < pauses) {
-        pause();
-      } else {
-        word_.wait(seen, std::memory_order_acquire);
-      }
-    }
-  }
-  /// Takes the present number, if it is below `end`, and leaves the next one.
-  bool take(std::uint32_t job, std::size_t end, std::size_t& taken) {
-    std::uint64_t seen = word_.load(std::memory_order_relaxed);
-    while (is_of(seen, job) && number(seen) < end) {
-      if (word_.compare_exchange_weak(seen, seen + 1, std::memory_order_acquire)) {
-        taken = number(seen);
-        return true;
-      }
-    }
-    return false;
-  }
-
- private:
-  std::atomic<std::uint64_t> word_ = 0;
-};
 
 /// The tasks of a phase that are one thread's to begin with: what it works on stays in the cache of
 /// its core, from phase to phase and from step to step.
 struct alignas(64) Share {
-  JobNumber next;
+  std::atomic<std::size_t> next = 0;
+  std::size_t end = 0;
 };
 
-struct alignas(64) Phase {
-  JobNumber tasks;
-  alignas(64) JobNumber done;
+/// A phase of tasks at work.
+struct Phase {
   std::vector<Share> shares;
+  std::atomic<std::size_t> done = 0;
+
+  Phase(std::size_t tasks, unsigned threads) : shares(threads) {
+    for (unsigned n = 0; n < threads; ++n) {
+      shares[n].next = tasks * n / threads;
+      shares[n].end = tasks * (n + 1) / threads;
+    }
+  }
+  /// run(task) for the tasks of a thread and then for those that others have not come to.
+  template <class Run>
+  void work(unsigned thread, Run&& run) {
+    for (std::size_t n = 0; n < shares.size(); ++n) {
+      Share& share = shares[(thread + n) % shares.size()];
+      for (auto task = share.next++; task < share.end; task = share.next++) {
+        run(task);
+        ++done;
+      }
+    }
+  }
 };
+
+void pause() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#endif
+}
+
+void wait_a_little(unsigned& times) {
+  // Who waits long may be waiting for somebody who has no core.
+  if (++times < 2000) {
+    pause();
+  } else {
+    std::this_thread::yield();
+  }
+}
 
 }  // namespace
 
-// A job is some phases of tasks. Threads take tasks, their own share first and then what others
-// have not come to; a phase ends when its tasks have ended, not when every thread has come by: a
-// thread that another program has pushed off its core keeps nobody waiting unless it is in the
-// middle of a task. Between phases threads stay awake for a little while, as waking them takes
-// longer than most phases.
-class Threads::Team {
- public:
-  using Body = FunctionReference<void(unsigned, std::size_t, std::size_t)>;
-  static constexpr std::size_t most_phases = 16;
-
-  explicit Team(unsigned count) : count_(count) {
-    for (auto& phase : phases_) phase.shares = std::vector<Share>(count);
-    try {
-      for (unsigned n = 1; n < count; ++n) workers_.emplace_back([this, n] { serve(n); });
-    } catch (const std::system_error&) {
-      // No more threads are to be had: fewer do the same.
-    }
-  }
-  ~Team() {
-    stop_ = true;
-    begin(job_ + 1);
-    for (auto& worker : workers_) worker.join();
-  }
-  Team(const Team&) = delete;
-  Team& operator=(const Team&) = delete;
-
-  /// At most so many phases, numbered from `first`. False, with nothing done, if the team is at
-  /// work already.
-  bool work(std::span<const std::size_t> tasks, std::size_t first, const Body& body) {
-    if (busy_.test_and_set(std::memory_order_acquire)) return false;
-    const std::uint32_t job = job_ + 1;
-    length_.set(job, tasks.size());
-    for (std::size_t n = 0; n < tasks.size(); ++n) {
-      Phase& phase = phases_[n];
-      phase.tasks.set(job, tasks[n]);
-      phase.done.set(job, 0);
-      for (unsigned thread = 0; thread < count_; ++thread) {
-        phase.shares[thread].next.set(job, tasks[n] * thread / count_);
-      }
-    }
-    body_ = &body;
-    first_ = first;
-    failed_ = false;
-    begin(job);
-    run(job, 0);
-    const std::exception_ptr failure = failed_ ? std::move(failure_) : nullptr;
-    busy_.clear(std::memory_order_release);
-    if (failure) std::rethrow_exception(failure);
-    return true;
-  }
-
- private:
-  void begin(std::uint32_t job) {
-    job_.store(job, std::memory_order_release);
-    job_.notify_all();
-  }
-
-  /// A worker's life.
-  void serve(unsigned thread) {
-    for (std::uint32_t known = 0;;) {
-      for (unsigned n = 0; n < pauses && job_.load(std::memory_order_relaxed) == known; ++n) {
-        pause();
-      }
-      job_.wait(known, std::memory_order_acquire);
-      known = job_.load(std::memory_order_acquire);
-      if (stop_) return;
-      run(known, thread);
-    }
-  }
-
-  /// Takes part in a job as long as there is anything to do.
-  void run(std::uint32_t job, unsigned thread) {
-    const std::uint64_t length = length_.get();
-    if (!JobNumber::is_of(length, job)) return;
-    for (std::size_t n = 0; n < JobNumber::number(length); ++n) {
-      Phase& phase = phases_[n];
-      const std::uint64_t tasks = phase.tasks.get();
-      if (!JobNumber::is_of(tasks, job)) return;
-      for (unsigned share = 0; share < count_; ++share) {
-        take_share(job, n, JobNumber::number(tasks), (thread + share) % count_, thread);
-      }
-      phase.done.wait_for(job, JobNumber::number(tasks));
-    }
-  }
-
-  void take_share(std::uint32_t job, std::size_t phase, std::size_t tasks, unsigned share,
-                  unsigned thread) {
-    const std::size_t end = tasks * (share + 1) / count_;
-    std::size_t task = 0;
-    while (phases_[phase].shares[share].next.take(job, end, task)) {
-      // The job lasts until this task is done.
-      try {
-        if (!failed_) (*body_)(thread, first_ + phase, task);
-      } catch (...) {
-        if (!failed_.exchange(true)) failure_ = std::current_exception();
-      }
-      phases_[phase].done.increase(job, tasks);
-    }
-  }
-
-  const unsigned count_;
-  alignas(64) std::atomic<std::uint32_t> job_ = 0;
-  alignas(64) std::atomic_flag busy_;
-  JobNumber length_;  ///< of the job, in phases
-  std::array<Phase, most_phases> phases_;
-  const Body* body_ = nullptr;
-  std::size_t first_ = 0;
-  std::atomic<bool> failed_ = false;
-  std::atomic<bool> stop_ = false;
-  std::exception_ptr failure_;
-  std::vector<std::thread> workers_;
+// A phase ends when its tasks have ended, not when every thread has come by: a thread that another
+// program has pushed off its core keeps nobody waiting unless it is in the middle of a task.
+// Between phases threads stay awake, as waking them takes longer than most phases.
+struct Threads::Arena : tbb::task_arena {
+  using tbb::task_arena::task_arena;
 };
 
 Threads::Threads(unsigned count) : count_(std::max(1U, count)) {
-  if (count_ > 1) team_ = std::make_shared<Team>(count_);
+  if (count_ > 1) arena_ = std::make_shared<Arena>(static_cast<int>(count_));
 }
 
 void Threads::ranges(std::size_t size,
@@ -215,15 +89,36 @@ void Threads::ranges(std::size_t size,
 
 void Threads::phases(std::span<const std::size_t> tasks,
                      FunctionReference<void(unsigned, std::size_t, std::size_t)> body) const {
-  // Where the team is at work already, in a task that has more of them, or for another system,
-  // the tasks are done one after the other.
-  for (std::size_t first = 0; first < tasks.size(); first += Team::most_phases) {
-    const auto some = tasks.subspan(first, std::min(Team::most_phases, tasks.size() - first));
-    if (team_ && team_->work(some, first, body)) continue;
-    for (std::size_t phase = 0; phase < some.size(); ++phase) {
-      for (std::size_t task = 0; task < some[phase]; ++task) body(0, first + phase, task);
+  if (count_ == 1) {
+    for (std::size_t phase = 0; phase < tasks.size(); ++phase) {
+      for (std::size_t task = 0; task < tasks[phase]; ++task) body(0, phase, task);
     }
+    return;
   }
+  std::deque<Phase> progress;
+  for (const std::size_t count : tasks) progress.emplace_back(count, count_);
+  std::atomic<bool> failed = false;
+  std::exception_ptr failure;
+  const auto work = [&](unsigned) {
+    const auto thread = static_cast<unsigned>(tbb::this_task_arena::current_thread_index());
+    for (std::size_t phase = 0; phase < tasks.size(); ++phase) {
+      progress[phase].work(thread, [&](std::size_t task) {
+        try {
+          if (!failed) body(thread, phase, task);
+        } catch (...) {
+          if (!failed.exchange(true)) failure = std::current_exception();
+        }
+      });
+      for (unsigned times = 0; progress[phase].done < tasks[phase];) wait_a_little(times);
+    }
+  };
+  // A task may ask for tasks of its own: who waits for those must not begin to work on phases that
+  // cannot end before it.
+  arena_->execute([&] {
+    tbb::this_task_arena::isolate(
+        [&] { tbb::parallel_for(0U, count_, work, tbb::simple_partitioner()); });
+  });
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace driftless

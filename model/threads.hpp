@@ -27,12 +27,10 @@ class FunctionReference<void(Arguments...)> {
   void (*call_)(const void*, Arguments...);
 };
 
-/// The threads that work on one system: the one that asks and helpers, who stay awake for a little
-/// while after their work and then sleep. What they compute does not depend on how many there are:
-/// tasks at work at the same time touch nothing in common. Copies have the helpers in common; who
-/// asks while they are at work, be it from inside a task, does its tasks alone. The first exception
-/// of a task ends the work, in so far as tasks that have not begun are left out, and is thrown
-/// again.
+/// The threads that work on one system. What they compute does not depend on how many there are:
+/// tasks at work at the same time touch nothing in common. Copies work in the same threads; a task
+/// may ask for tasks of its own. The first exception of a task ends the work, in so far as tasks that
+/// have not begun are left out, and is thrown again.
 class Threads {
  public:
   explicit Threads(unsigned count = 1);
@@ -47,10 +45,10 @@ class Threads {
               FunctionReference<void(unsigned, std::size_t, std::size_t)> body) const;
 
  private:
-  class Team;
+  struct Arena;
 
   unsigned count_;
-  std::shared_ptr<Team> team_;
+  std::shared_ptr<Arena> arena_;
 };
 
 }  // namespace driftless
