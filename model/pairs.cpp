@@ -76,6 +76,37 @@ constexpr auto counting = [] {
   return numbers;
 }();
 
+/// The numbers of the bits that are set, for every eight bits: what Compress takes from a table
+/// where processors have no instruction for it. Some compilers copy Highway's own at every use.
+constexpr auto bits_set = [] {
+  std::array<std::array<std::uint8_t, 8>, 256> numbers{};
+  for (std::size_t bits = 0; bits < 256; ++bits) {
+    std::size_t count = 0;
+    for (std::uint8_t n = 0; n < 8; ++n) {
+      if (bits >> n & 1) numbers[bits][count++] = n;
+    }
+  }
+  return numbers;
+}();
+
+/// Stores those of `numbers` that are near, and a rest up to a whole vector. Returns how many.
+HWY_INLINE std::size_t store_near(hn::Vec<Indices> numbers, hn::Mask<Indices> near,
+                                  std::uint32_t* to) {
+  const Indices indices;
+  // Compressed in the register: storing a part of a vector takes longer than all of it.
+  if constexpr (hn::MaxLanes(Indices()) <= 8) {
+    std::uint8_t bits[8];
+    hn::StoreMaskBits(indices, near, bits);
+    const hn::Rebind<std::uint8_t, Indices> bytes;
+    const auto lanes = hn::PromoteTo(indices, hn::LoadU(bytes, bits_set[bits[0]].data()));
+    hn::StoreU(hn::TableLookupLanes(numbers, hn::IndicesFromVec(indices, lanes)), indices, to);
+    return static_cast<std::size_t>(std::popcount(bits[0]));
+  } else {
+    hn::StoreU(hn::Compress(numbers, near), indices, to);
+    return hn::CountTrue(indices, near);
+  }
+}
+
 /// As many particles side by side as there are lanes of single precision.
 struct Candidates {
   std::array<hn::Vec<Floats>, 3> position;
@@ -134,10 +165,8 @@ HWY_INLINE void add_near(Writer& found, const Images& images, std::uint32_t i,
   }
   const auto near =
       hn::RebindMask(indices, hn::And(hn::Lt(squared, hn::Set(floats, limit)), counted));
-  // Compressed in the register: storing a part of a vector takes longer than all of it.
-  hn::StoreU(hn::Compress(candidates.number, near), indices, found.j + found.size);
   hn::StoreU(hn::Set(indices, i), indices, found.i + found.size);
-  found.size += hn::CountTrue(indices, near);
+  found.size += store_near(candidates.number, near, found.j + found.size);
 }
 
 template <bool wrap>
