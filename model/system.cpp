@@ -163,46 +163,77 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
     if (trial) pass.trial(particles);
     pass.run(kernel, 0, count);
   };
-  for_each_chunk(visit, gather);
-  for_each_contact_chunk([&](PairPass& pass, std::size_t boundary, std::size_t count) {
+  const auto at_boundary = [&](PairPass& pass, std::size_t boundary, std::size_t count) {
     pass.draw_contact_normals(noise_, stage, BoundaryContacts::id(boundary));
     pass.draw_no_uniforms();
     pass.motion(particles, 0, count);
     if (trial) pass.trial(particles);
     pass.run(kernel, 0, count);
-  });
-  scatter_sums(total.momentum, total.energy, total.surroundings);
+  };
+  const ContactAnswer contacts(at_boundary);
+  sum(total, visit, gather, &contacts);
   drop_if_isothermal(total.energy);
   drop_if_isothermal(total.surroundings);
   count_visit(!kept, false);
 }
 
-void System::for_each_chunk(
-    FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer,
-    FunctionReference<void(std::size_t, std::size_t)> prepare) {
+void System::sum(Exchange& total, PairAnswer answer,
+                 FunctionReference<void(std::size_t, std::size_t)> prepare,
+                 const ContactAnswer* at_boundary) {
   summing_ = true;
+  total.momentum.resize(size());
+  total.energy.resize(size());
   const auto colours = pairs_.colours();
+  const auto contacts = at_boundary ? contacts_.phases() : std::span<const std::size_t>();
+  const std::size_t first_contact = 1 + colours.size(), last = first_contact + contacts.size();
+  // Particles, pairs colour by colour, contacts, and particles again.
   std::vector<std::size_t> tasks(1, threads_.count());
   tasks.insert(tasks.end(), colours.begin(), colours.end());
+  tasks.insert(tasks.end(), contacts.begin(), contacts.end());
+  tasks.push_back(cells_.shares());
   std::fill(sums_.begin() + static_cast<std::ptrdiff_t>(size()), sums_.end(), Quadruple{});
+  const auto start = [&](std::size_t task) {
+    const std::size_t begin = size() * task / tasks[0], end = size() * (task + 1) / tasks[0];
+    std::fill_n(sums_.begin() + static_cast<std::ptrdiff_t>(begin), end - begin, Quadruple{});
+    prepare(begin, end);
+  };
   const auto visit = [&](PairPass& pass, PairBlock& block, std::size_t first, std::size_t count) {
     answer(pass, block, first, count);
     pass.add(sums_.data());
   };
+  const auto visit_contacts = [&](PairPass& pass, std::size_t boundary, std::size_t count) {
+    (*at_boundary)(pass, boundary, count);
+    pass.add(sums_.data());
+  };
   threads_.phases(tasks, [&](unsigned thread, std::size_t phase, std::size_t task) {
-    if (phase > 0) {
-      for_each_run(passes_[thread], pairs_.block(phase - 1, task), visit);
-      return;
+    PairPass& pass = passes_[thread];
+    if (phase == 0) {
+      start(task);
+    } else if (phase < first_contact) {
+      for_each_run(pass, pairs_.block(phase - 1, task), visit);
+    } else if (phase < last) {
+      for_each_contact_run(pass, contacts_.group(phase - first_contact, task), visit_contacts);
+    } else {
+      scatter_sums(total, task);
     }
-    const std::size_t begin = size() * task / tasks[0], end = size() * (task + 1) / tasks[0];
-    std::fill_n(sums_.begin() + static_cast<std::ptrdiff_t>(begin), end - begin, Quadruple{});
-    prepare(begin, end);
+  });
+  total.surroundings = {};
+  for (std::size_t number = 0; !contacts.empty() && number < BoundaryContacts::numbers; ++number) {
+    const auto& received = sums_[size() + number];
+    total.surroundings[BoundaryContacts::boundary(number)] +=
+        {Vector(received.x, received.y, received.z), received.energy};
+  }
+  summing_ = false;
+}
+
+void System::scatter_sums(Exchange& total, std::size_t share) const {
+  cells_.for_each_of_share(share, [&](std::size_t i, std::size_t n) {
+    total.momentum[i] = Vector(sums_[n].x, sums_[n].y, sums_[n].z);
+    total.energy[i] = sums_[n].energy;
   });
 }
 
-void System::for_each_run(
-    PairPass& pass, PairBlock& block,
-    FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> visit) {
+void System::for_each_run(PairPass& pass, PairBlock& block, PairAnswer visit) {
   std::size_t first = 0;
   for (std::size_t kind = 0; kind < block.kind_end.size(); ++kind) {
     pass.set_law(fluid_.law(kind / fluid_.species(), kind % fluid_.species()));
@@ -215,40 +246,15 @@ void System::for_each_run(
   }
 }
 
-void System::for_each_contact_chunk(
-    FunctionReference<void(PairPass&, std::size_t, std::size_t)> answer) {
-  if (!contacts_.any()) return;
-  threads_.phases(contacts_.phases(), [&](unsigned thread, std::size_t phase, std::size_t task) {
-    const auto& group = contacts_.group(phase, task);
-    PairPass& pass = passes_[thread];
-    pass.set_law(*group.law);
-    for (std::size_t first = 0; first < group.contacts.size; first += pairs_a_chunk) {
-      const std::size_t count = std::min(pairs_a_chunk, group.contacts.size - first);
-      pass.take(fluid_, cells_, group.contacts, first, count);
-      pass.contact_geometry(group.boundary);
-      answer(pass, group.boundary, count);
-      pass.add(sums_.data());
-    }
-  });
-}
-
-void System::scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy,
-                          Surroundings& surroundings) {
-  momentum.resize(size());
-  energy.resize(size());
-  const std::size_t shares[] = {cells_.shares()};
-  threads_.phases(shares, [&](unsigned, std::size_t, std::size_t share) {
-    cells_.for_each_of_share(share, [&](std::size_t i, std::size_t n) {
-      momentum[i] = Vector(sums_[n].x, sums_[n].y, sums_[n].z);
-      energy[i] = sums_[n].energy;
-    });
-  });
-  surroundings = {};
-  for (std::size_t number = 0; contacts_.any() && number < BoundaryContacts::numbers; ++number) {
-    const auto& sum = sums_[size() + number];
-    surroundings[BoundaryContacts::boundary(number)] += {Vector(sum.x, sum.y, sum.z), sum.energy};
+void System::for_each_contact_run(PairPass& pass, const BoundaryContacts::Group& group,
+                                  ContactAnswer answer) {
+  pass.set_law(*group.law);
+  for (std::size_t first = 0; first < group.contacts.size; first += pairs_a_chunk) {
+    const std::size_t count = std::min(pairs_a_chunk, group.contacts.size - first);
+    pass.take(fluid_, cells_, group.contacts, first, count);
+    pass.contact_geometry(group.boundary);
+    answer(pass, group.boundary, count);
   }
-  summing_ = false;
 }
 
 void System::drop_if_isothermal(Surroundings& surroundings) const {
@@ -372,25 +378,21 @@ void System::sweep_contacts(const PassParticles& particles, const PairKernel& ke
   received_.assign(BoundaryContacts::numbers, {});
   threads_.phases(tasks, [&](unsigned thread, std::size_t phase, std::size_t task) {
     const auto& group = contacts_.group(reverse ? tasks.size() - 1 - phase : phase, task);
-    PairPass& pass = passes_[thread];
-    pass.set_law(*group.law);
-    for (std::size_t first = 0; first < group.contacts.size; first += pairs_a_chunk) {
-      const std::size_t count = std::min(pairs_a_chunk, group.contacts.size - first);
-      const auto id = BoundaryContacts::id(group.boundary);
-      pass.take(fluid_, cells_, group.contacts, first, count);
-      pass.contact_geometry(group.boundary);
-      pass.draw_contact_normals(noise_, how.stage, id);
-      if (how.uniforms) {
-        pass.draw_contact_uniforms(noise_, how.stage, id);
-      } else {
-        pass.draw_no_uniforms();
-      }
-      pass.motion(particles, 0, count);
-      pass.run(kernel, 0, count);
-      if (pass.apply_contacts(particles, 0, count)) continue;
-      if (how.energies == SweepEnergies::frozen) continue;
-      note_failed(pass, 0, count, failed[thread]);
-    }
+    for_each_contact_run(passes_[thread], group,
+                         [&](PairPass& pass, std::size_t boundary, std::size_t count) {
+                           const auto id = BoundaryContacts::id(boundary);
+                           pass.draw_contact_normals(noise_, how.stage, id);
+                           if (how.uniforms) {
+                             pass.draw_contact_uniforms(noise_, how.stage, id);
+                           } else {
+                             pass.draw_no_uniforms();
+                           }
+                           pass.motion(particles, 0, count);
+                           pass.run(kernel, 0, count);
+                           if (pass.apply_contacts(particles, 0, count)) return;
+                           if (how.energies == SweepEnergies::frozen) return;
+                           note_failed(pass, 0, count, failed[thread]);
+                         });
   });
   for (std::size_t number = 0; number < BoundaryContacts::numbers; ++number) {
     const auto& sum = received_[number];
@@ -483,7 +485,7 @@ void System::give_surroundings(const Exchange& exchange, double share) {
 void System::give_surroundings(double duration) {
   renew_conservative();
   for (std::size_t n = 0; n < surrounding_places; ++n) {
-    state_.surroundings[n].momentum += duration * surroundings_force_[n].momentum;
+    state_.surroundings[n].momentum += duration * conservative_.surroundings[n].momentum;
   }
 }
 
@@ -599,9 +601,7 @@ void System::move_along(const std::vector<Vector>& velocity, double duration) {
 void System::renew_conservative() {
   if (conservative_version_ == positions_version_) return;
   if (!fluid_.has_repulsion()) {
-    force_.assign(size(), Vector::Zero());
-    potential_share_.assign(size(), 0.0);
-    surroundings_force_ = {};
+    conservative_.reset(size());
     conservative_version_ = positions_version_;
     return;
   }
@@ -613,13 +613,15 @@ void System::renew_conservative() {
                     law.potential_share_j() * potential};
   };
   const PairKernel kernel = PairKernel::of(repulsion);
-  for_each_chunk([&](PairPass& pass, PairBlock&, std::size_t, std::size_t count) {
+  const auto of_pairs = [&](PairPass& pass, PairBlock&, std::size_t, std::size_t count) {
     pass.geometry(0, count);
     pass.run(kernel, 0, count);
-  });
-  for_each_contact_chunk(
-      [&](PairPass& pass, std::size_t, std::size_t count) { pass.run(kernel, 0, count); });
-  scatter_sums(force_, potential_share_, surroundings_force_);
+  };
+  const auto at_boundary = [&](PairPass& pass, std::size_t, std::size_t count) {
+    pass.run(kernel, 0, count);
+  };
+  const ContactAnswer contacts(at_boundary);
+  sum(conservative_, of_pairs, nothing_to_prepare, &contacts);
   conservative_version_ = positions_version_;
   count_visit(false, false);
 }
@@ -627,15 +629,15 @@ void System::renew_conservative() {
 const std::vector<Vector>& System::conservative_force() {
   if (fluid_.repulsion_follows_temperatures()) {
     renew_thermal_force();
-    return total_force_;
+    return thermal_.momentum;
   }
   renew_conservative();
-  return force_;
+  return conservative_.momentum;
 }
 
 const std::vector<double>& System::potential_shares() {
   renew_conservative();
-  return potential_share_;
+  return conservative_.energy;
 }
 
 double System::kinetic_energy() const {

@@ -168,24 +168,31 @@ class System {
   void cut_cells();
   void find_pairs();
   static constexpr auto nothing_to_prepare = [](std::size_t, std::size_t) {};
-  /// Sums what pairs exchange: answer(pass, block, first, count) has the pass find it for a part of
-  /// a block's pairs, after prepare(begin, end) for parts of the particles in the order of cells.
-  void for_each_chunk(
-      FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> answer,
-      FunctionReference<void(std::size_t, std::size_t)> prepare = nothing_to_prepare);
+  using PairAnswer = FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)>;
+  using ContactAnswer = FunctionReference<void(PairPass&, std::size_t, std::size_t)>;
+  /// Sums what pairs exchange, per particle: answer(pass, block, first, count) has the pass find it
+  /// for a part of a block's pairs, after prepare(begin, end) for parts of the particles in the
+  /// order of cells.
+  void sum(Exchange& total, PairAnswer answer,
+           FunctionReference<void(std::size_t, std::size_t)> prepare = nothing_to_prepare) {
+    sum(total, answer, prepare, nullptr);
+  }
+  /// And at_boundary(pass, boundary, count) for contacts with boundaries, if there is any.
+  void sum(Exchange& total, PairAnswer answer,
+           FunctionReference<void(std::size_t, std::size_t)> prepare,
+           const ContactAnswer* at_boundary);
   /// visit(pass, block, first, count) when the pass has taken a part of a block's pairs, of one
   /// kind and no more than stay in the cache.
-  void for_each_run(PairPass& pass, PairBlock& block,
-                    FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)> visit);
+  void for_each_run(PairPass& pass, PairBlock& block, PairAnswer visit);
   void visit_pairs(const PairPass& pass, std::size_t count,
                    FunctionReference<void(const Geometry&)> visit) const;
-  /// The same for contacts with boundaries: answer(pass, boundary, count).
-  void for_each_contact_chunk(FunctionReference<void(PairPass&, std::size_t, std::size_t)> answer);
+  /// answer(pass, boundary, count) when the pass has taken a part of a group of contacts.
+  void for_each_contact_run(PairPass& pass, const BoundaryContacts::Group& group,
+                            ContactAnswer answer);
   /// Leaves nothing behind of a visit that a kernel has broken off.
   void forget_sums();
-  /// Hands out the sums and leaves zeros.
-  void scatter_sums(std::vector<Vector>& momentum, std::vector<double>& energy,
-                    Surroundings& surroundings);
+  /// Hands a share of the particles their sums.
+  void scatter_sums(Exchange& total, std::size_t share) const;
   /// Leaves zeros where there are no internal energies.
   void drop_if_isothermal(std::vector<double>& energies) const;
   void drop_if_isothermal(Surroundings& surroundings) const;
@@ -242,15 +249,13 @@ class System {
   /// In the order of cells, and then by the numbers of the contacts' other sides.
   std::vector<Quadruple> motion_, trial_, frozen_motion_, sums_;
   std::vector<Quadruple> received_;  ///< in a sweep, by the contacts' other sides
-  std::vector<Vector> force_;
-  Surroundings surroundings_force_ = {};
-  std::vector<double> potential_share_;
+  Exchange conservative_;            ///< forces, and shares in potential energies
   // Where the repulsion follows the temperatures.
   std::uint64_t energies_version_ = 1;
   std::uint64_t factors_version_ = 0;
   std::uint64_t thermal_positions_version_ = 0, thermal_energies_version_ = 0;
-  std::vector<double> energy_factor_, thermal_repulsion_, scratch_energy_;
-  std::vector<Vector> total_force_;
+  std::vector<double> energy_factor_, thermal_repulsion_;
+  Exchange thermal_;  ///< forces, all of them; and memory
 };
 
 template <class Change>

@@ -12,17 +12,16 @@ void System::renew_factors() {
     return Transfer{0 * half, half, half};
   };
   const PairKernel kernel = PairKernel::of(halves);
-  for_each_chunk([&](PairPass& pass, PairBlock&, std::size_t, std::size_t count) {
+  sum(thermal_, [&](PairPass& pass, PairBlock&, std::size_t, std::size_t count) {
     pass.geometry(0, count);
     pass.run(kernel, 0, count);
   });
-  Surroundings none;
-  scatter_sums(total_force_, energy_factor_, none);
+  energy_factor_.resize(size());
   const auto& f = fluid_.parameters();
   for_each_particle([&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const double per_energy = equation_of_state(i).inverse_heat_capacity(1.0) / f.temperature;
-      energy_factor_[i] = 1 + f.thermal_repulsion * per_energy * energy_factor_[i];
+      energy_factor_[i] = 1 + f.thermal_repulsion * per_energy * thermal_.energy[i];
     }
   });
   factors_version_ = positions_version_;
@@ -56,15 +55,13 @@ void System::renew_thermal_force() {
   };
   const PairKernel kernel = PairKernel::of(repulsion);
   const PassParticles particles{motion_.data(), nullptr, nullptr, nullptr};
-  for_each_chunk([&](PairPass& pass, PairBlock&, std::size_t, std::size_t count) {
+  sum(thermal_, [&](PairPass& pass, PairBlock&, std::size_t, std::size_t count) {
     pass.geometry(0, count);
     pass.motion(particles, 0, count);
     pass.run(kernel, 0, count);
   });
-  Surroundings none;
-  scatter_sums(total_force_, scratch_energy_, none);
   for_each_particle([&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) total_force_[i] += force_[i];
+    for (std::size_t i = begin; i < end; ++i) thermal_.momentum[i] += conservative_.momentum[i];
   });
   thermal_positions_version_ = positions_version_;
   thermal_energies_version_ = energies_version_;
