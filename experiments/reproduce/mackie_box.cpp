@@ -47,18 +47,6 @@ double pushed(const Surroundings& surroundings) {
 
 }  // namespace
 
-FluidParameters mackie_parameters(const MackieFluid& fluid) {
-  FluidParameters f;
-  f.boltzmann = 0.5;
-  f.heat_capacity = f.boltzmann / fluid.B;
-  f.friction = 1;
-  f.friction_closure = FrictionClosure::friction;
-  f.conduction = fluid.C * f.heat_capacity;
-  f.heat_form = HeatForm::inverse_temperature;
-  f.friction_range = f.heat_range = fluid.range;
-  return f;
-}
-
 WallLayer wall_layer(const WallRepulsion& repulsion, double boltzmann, double temperature) {
   const double thermal = boltzmann * temperature;
   const double height = 0.5 * repulsion.strength * repulsion.range / thermal;  // psi(0)/kT
@@ -81,17 +69,6 @@ double mackie_conductivity(double density) {
   const double rate = mackie_parameters(mackie_liquid).conduction * density * density;
   return 2 * std::numbers::pi * rate * std::pow(mackie_liquid.range, 5) /
          (315 * mackie_temperature * mackie_temperature);
-}
-
-Wall mackie_reservoir(const FluidParameters& fluid, double temperature,
-                      const WallRepulsion& repulsion) {
-  return {.temperature = temperature,
-          .repulsion = repulsion.strength,
-          .repulsion_range = repulsion.range,
-          .friction = fluid.friction,
-          .friction_range = fluid.friction_range,
-          .conduction = fluid.conduction,
-          .heat_range = fluid.heat_range};
 }
 
 Box mackie_cube(std::size_t particles, const Wall& wall, int walled_axes) {

@@ -6,31 +6,12 @@
 #include <vector>
 
 #include "experiments/long_run.hpp"
+#include "experiments/mackie_fluid.hpp"
 #include "experiments/reproduce/experiment.hpp"
 #include "experiments/study.hpp"
 
-/// The boxes of [MAN], Mackie, Bonet Avalos, Navas, PCCP 1, 2039 (1999), in its own units: lengths
-/// in sqrt(2 m k T_R)/zeta_0, times in m/zeta_0. In program units m = zeta_0 = T_R = 1 and k = 1/2.
+/// The boxes of [MAN], Mackie, Bonet Avalos, Navas, PCCP 1, 2039 (1999), in its own units.
 namespace driftless::reproduce {
-
-/// The paper's dimensionless numbers of a fluid; its density is 1, it has no repulsion.
-struct MackieFluid {
-  double B;      ///< k/phi
-  double C;      ///< L_0/phi
-  double range;  ///< r*
-};
-
-/// Of the equilibrium runs [MAN Fig. 1-3].
-inline constexpr MackieFluid mackie_liquid{0.01, 17, 1.24};
-inline constexpr double mackie_temperature = 1.1;  ///< of its walls
-
-FluidParameters mackie_parameters(const MackieFluid& fluid);
-
-/// The repulsion of a wall: psi(x) = (a r_w/2)(1 - x/r_w)^2; a = 0: a hard wall.
-struct WallRepulsion {
-  double strength = 0;  ///< a
-  double range = 1;     ///< r_w
-};
 
 /// What an ideal gas of boltzmann k and a temperature makes of a wall.
 struct WallLayer {
@@ -38,9 +19,6 @@ struct WallLayer {
   double potential;  ///< int psi exp(-psi/kT) dx: potential energy per area and bulk density
 };
 WallLayer wall_layer(const WallRepulsion& repulsion, double boltzmann, double temperature);
-
-/// Of the walls of the equilibrium runs, as far as their friction reaches.
-inline constexpr WallRepulsion mackie_repulsion{1.8, 1.24};
 
 /// A box of mean density 1 as its particles see it.
 struct MackieBulk {
@@ -51,10 +29,6 @@ MackieBulk mackie_bulk(std::size_t particles, const WallRepulsion& repulsion, in
 
 /// Conductivity of the liquid at a density [MAN 3.28], at the walls' temperature.
 double mackie_conductivity(double density);
-
-/// A reservoir with the friction, conduction and range that two particles have.
-Wall mackie_reservoir(const FluidParameters& fluid, double temperature,
-                      const WallRepulsion& repulsion);
 
 /// A cube of density 1 with the same wall on the faces of so many axes, z first.
 Box mackie_cube(std::size_t particles, const Wall& wall, int walled_axes = 3);

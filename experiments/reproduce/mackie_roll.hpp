@@ -7,8 +7,7 @@
 /// The box of [MAN Fig. 4-6]: a fluid between a hot and a cold wall in a weak field.
 namespace driftless::reproduce {
 
-inline constexpr MackieFluid mackie_gas{0.1, 0.001, 2};
-inline constexpr double hot = 2.8, cold = 0.8, gravity = 0.01;
+inline constexpr double hot = mackie_hot, cold = mackie_cold, gravity = mackie_gravity;
 inline constexpr std::size_t roll_particles = 100000;
 
 /// Side of the section: of the cube of 100000 particles at density 1.
