@@ -94,6 +94,13 @@ json or_failure(const std::function<json()>& work) {
 
 bool failed(const json& record) { return record.contains("failure"); }
 
+const json* record_or_remark(const Records& records, const std::string& part, Outcome& outcome) {
+  const json& record = records.at(part);
+  if (!failed(record)) return &record;
+  outcome.remarks.push_back(part + " failed: " + record["failure"].get<std::string>() + ".");
+  return nullptr;
+}
+
 Interval interval_of(const json& estimate) {
   const double mean = estimate.at("mean");
   // An infinite error is null in JSON.

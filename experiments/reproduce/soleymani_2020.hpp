@@ -49,6 +49,9 @@ double cost_of(const flux::PeriodicFluid& fluid, double duration);
 /// `work`'s record, or {"failure"} if the method fails.
 nlohmann::json or_failure(const std::function<nlohmann::json()>& work);
 bool failed(const nlohmann::json& record);
+/// The record of a part; nothing if its method failed, which a remark then says.
+const nlohmann::json* record_or_remark(const Records& records, const std::string& part,
+                                       Outcome& outcome);
 
 /// Of an estimate {"mean", "error"}.
 Interval interval_of(const nlohmann::json& estimate);

@@ -223,12 +223,8 @@ Outcome conclude(const Conditions& conditions, const Records& records) {
     }
   }
   for (const auto& point : all_points()) {
-    const json& record = records.at(point.name());
-    if (failed(record)) {
-      outcome.remarks.push_back(point.name() + " failed: " + record["failure"].get<std::string>() +
-                                ".");
-    } else {
-      outcome.rows.push_back(row_of(point, record));
+    if (const auto* record = record_or_remark(records, point.name(), outcome)) {
+      outcome.rows.push_back(row_of(point, *record));
     }
   }
   for (const auto& scan : scans()) outcome.pictures.push_back(picture(scan, records));

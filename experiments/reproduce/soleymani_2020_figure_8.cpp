@@ -279,12 +279,8 @@ Outcome conclude(const Conditions& conditions, const Records& records) {
     add_rows_of_all(repulsion, conditions, records, outcome);
   }
   for (const auto& point : all_points()) {
-    const json& record = records.at(point.name());
-    if (failed(record)) {
-      outcome.remarks.push_back(point.name() + " failed: " + record["failure"].get<std::string>() +
-                                ".");
-    } else {
-      add_rows(point, fluid_at(point, conditions), record, outcome);
+    if (const auto* record = record_or_remark(records, point.name(), outcome)) {
+      add_rows(point, fluid_at(point, conditions), *record, outcome);
     }
   }
   outcome.pictures.push_back(correlations(records, conditions));

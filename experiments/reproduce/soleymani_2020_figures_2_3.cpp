@@ -186,14 +186,10 @@ Outcome conclude(const Conditions& conditions, const Records& records) {
   outcome.remarks = common_remarks(conditions);
   for (const auto& combination : all_combinations()) {
     for (const char* method : methods_for(combination)) {
-      const json& record = records.at(part_name(combination, method));
-      if (failed(record)) {
-        outcome.remarks.push_back(part_name(combination, method) +
-                                  " failed: " + record["failure"].get<std::string>() + ".");
-        continue;
-      }
+      const auto* record = record_or_remark(records, part_name(combination, method), outcome);
+      if (!record) continue;
       const double length = box_of(combination, method, conditions).lengths[2];
-      add_rows(combination, method, record, length, outcome);
+      add_rows(combination, method, *record, length, outcome);
     }
   }
   for (const char* method : {published, contrast}) {

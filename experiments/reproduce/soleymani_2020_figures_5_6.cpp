@@ -182,12 +182,8 @@ Outcome conclude(const Conditions& conditions, const Records& records) {
   Outcome outcome;
   outcome.remarks = common_remarks(conditions);
   for (const auto& point : all_points()) {
-    const json& record = records.at(point.name());
-    if (failed(record)) {
-      outcome.remarks.push_back(point.name() + " failed: " + record["failure"].get<std::string>() +
-                                ".");
-    } else {
-      add_rows(point, record, outcome);
+    if (const auto* record = record_or_remark(records, point.name(), outcome)) {
+      add_rows(point, *record, outcome);
     }
   }
   for (const auto& combination : shown()) {
