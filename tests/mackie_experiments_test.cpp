@@ -1,7 +1,10 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
+#include "experiments/reproduce/mackie_roll.hpp"
 #include "experiments/reproduce/reproduce.hpp"
 
 /// What the experiments of Mackie, Bonet Avalos, Navas (1999) conclude, from records made up so
@@ -216,6 +219,81 @@ TEST(MackieWalls, WhatIsWrongIsADifference) {
   EXPECT_NEAR(books.ours.value, 1e-6 / (boltzmann * wall_temperature), 1e-8);
   EXPECT_EQ(row_of(outcome, "largest energy of a step", "avalos-mackie-explicit").verdict,
             Verdict::ours_alone);
+}
+
+// The convection roll.
+
+struct MadeRoll {
+  double flow;             ///< psi_0
+  double in, out, change;  ///< of energy, per time
+};
+
+/// Three hundred samples, and a section whose mass flow has the stream function psi_0 sin sin.
+json roll_record(const MadeRoll& made) {
+  json series;
+  for (int n = 0; n < 300; ++n) {
+    const double time = 10.0 * n, wobble = std::sin(1e3 * n + 1);
+    series["time"].push_back(time);
+    series["roll"].push_back(made.flow + 0.01 * wobble);
+    series["kinetic"].push_back(1000 + 0.25 * made.change * time);
+    series["internal"].push_back(5000 + 0.75 * made.change * time);
+    series["potential"].push_back(0);
+    series["hot"].push_back(-made.in * time + wobble);
+    series["cold"].push_back(made.out * time + wobble);
+  }
+  constexpr int cells = 10;
+  const double wave = std::numbers::pi / cells, speed = made.flow * std::numbers::pi / roll_side();
+  json quantities;
+  for (int row = 0; row < cells; ++row) {
+    for (int column = 0; column < cells; ++column) {
+      const double x = wave * (column + 0.5), z = wave * (row + 0.5);
+      quantities["number_density"]["values"].push_back(1);
+      quantities["velocity_x"]["values"].push_back(speed * std::sin(x) * std::cos(z));
+      quantities["velocity_z"]["values"].push_back(-speed * std::cos(x) * std::sin(z));
+      quantities["velocity_z"]["errors"].push_back(1e-4);
+      quantities["internal_temperature"]["values"].push_back(1.9 - 0.02 * column);
+    }
+  }
+  return {{"series", series},
+          {"fields", {{"bins", {cells, 1, cells}}, {"quantities", quantities}}}};
+}
+
+Outcome figures_4_6(const MadeRoll& made) {
+  return outcome_of("mackie-1999-figures-4-6", [&](const std::string& part) -> json {
+    if (part.starts_with("temperatures")) return {{"failure", "made up"}};
+    return roll_record(made);
+  });
+}
+
+TEST(MackieFigures4To6, ARollUpAlongTheHotWallIsSeen) {
+  const auto outcome = figures_4_6({-1.2, 50, 50, 0});
+  const auto& flow = row_of(outcome, "mass flow around", "hot left wall");
+  EXPECT_EQ(flow.verdict, Verdict::agrees);
+  EXPECT_NEAR(flow.ours.value, -1.2, 1e-3);
+  EXPECT_NEAR(row_of(outcome, "largest stream", "hot left wall").ours.value, -1.2, 0.02);
+  EXPECT_NEAR(row_of(outcome, "fall of the internal", "hot left wall").ours.value, 0.2, 1e-12);
+  EXPECT_NEAR(row_of(outcome, "Nusselt", "hot left wall").ours.value, 1, 0.01);
+  const auto& out = row_of(outcome, "heat flux out", "hot left wall");
+  EXPECT_EQ(out.verdict, Verdict::agrees);
+  EXPECT_NEAR(out.ours.value, 50 * roll_side() / 13000, 1e-3);
+}
+
+TEST(MackieFigures4To6, NoRollIsNotResolvedAndTheWrongSenseDiffers) {
+  const auto verdict = [](double flow, const char* setting) {
+    return row_of(figures_4_6({flow, 50, 50, 0}), "mass flow around", setting).verdict;
+  };
+  EXPECT_EQ(verdict(0, "hot left wall"), Verdict::not_resolved);
+  EXPECT_EQ(verdict(0, "hot floor"), Verdict::not_resolved);
+  EXPECT_EQ(verdict(1.2, "hot left wall"), Verdict::differs);
+  EXPECT_EQ(verdict(1.2, "hot floor"), Verdict::agrees);
+}
+
+TEST(MackieFigures4To6, HeatThatTheFluidGivesOffIsTold) {
+  const auto outcome = figures_4_6({-1.2, 50, 75, -25});
+  const auto& out = row_of(outcome, "heat flux out", "hot left wall");
+  EXPECT_EQ(out.verdict, Verdict::differs);
+  const auto change = fmt::format("{:+.4f}", -25 * roll_side() / 13000);
+  EXPECT_NE(out.explanation.find(change), std::string::npos) << out.explanation;
 }
 
 }  // namespace
