@@ -100,6 +100,33 @@ TEST(Judge, WritesAReportOfEveryMethod) {
   EXPECT_NE(summary.find("The sum is there. (claimed otherwise)"), std::string::npos) << summary;
 }
 
+/// A judgement of one examination, whose findings say who made it.
+json made_by(const std::string& examination, const std::string& depth, const std::string& method) {
+  return {{"depth", depth},
+          {"examinations", {{{"name", examination}, {"depth", depth}, {"command", depth}}}},
+          {"methods",
+           {{{"name", method},
+             {"conclusions", {{examination, {{"verdict", depth}, {"tables", json::array()}}}}}}}}};
+}
+
+TEST(Judge, ExaminationsMadeEarlierStay) {
+  const auto earlier = made_by("stability", "full", "peters");
+  const auto both = united(earlier, made_by("galilean", "quick", "peters"));
+  EXPECT_EQ(both["depth"], "full and quick");
+  EXPECT_EQ(both["examinations"].size(), 2U);
+  const auto& conclusions = both["methods"][0]["conclusions"];
+  EXPECT_EQ(conclusions["stability"]["verdict"], "full");
+  EXPECT_EQ(conclusions["galilean"]["verdict"], "quick");
+
+  const auto again = united(both, made_by("stability", "quick", "peters"));
+  EXPECT_EQ(again["depth"], "quick");
+  EXPECT_EQ(again["methods"][0]["conclusions"]["stability"]["verdict"], "quick");
+  EXPECT_EQ(again["examinations"].size(), 2U);
+
+  const auto other = made_by("galilean", "quick", "trotter");
+  EXPECT_EQ(united(earlier, other), other) << "of another method";
+}
+
 TEST(Judge, MistakesOnTheCommandLineAreNamed) {
   const auto complaint = [](const std::string& text) -> std::string {
     try {

@@ -30,9 +30,11 @@ void run(const Arguments& arguments) {
                          arguments.depth, arguments.seed, directory.string());
   for (const auto& name : arguments.examinations) command += " --examination " + name;
   const auto depth = arguments.depth == "full" ? judge::Depth::full : judge::Depth::quick;
-  const auto judgement = judge::run_judgement(
+  const auto earlier = judge::read_judgement(directory);
+  auto judgement = judge::run_judgement(
       candidates, examinations,
       {directory, {depth, arguments.seed}, arguments.threads, command, arguments.quiet});
+  if (earlier) judgement = judge::united(*earlier, std::move(judgement));
   print_written(judge::judgement_summary(judgement), judge::write_judgement(judgement, directory));
 }
 
@@ -51,7 +53,8 @@ void add_judge(CLI::App& app) {
                    "quick: minutes on 4 cores for a few methods; full: hours for all")
       ->check(CLI::IsMember({"quick", "full"}));
   command->add_option("--examination", arguments->examinations,
-                      "this examination alone (may be given several times)");
+                      "this examination alone (may be given several times); the others stay as "
+                      "they are in the folder");
   command->add_option("-o,--output", arguments->directory,
                       "folder of the judgement (default: driftless-results/judgement)");
   command->add_option("--seed", arguments->seed, "of all noise (default 1)");

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <set>
 
 #include "experiments/judge/trade.hpp"
 #include "experiments/kept_parts.hpp"
@@ -96,16 +98,20 @@ json Judgement::method_record(const Candidate& candidate) const {
 
 json Judgement::run() {
   run_parts();
+  const auto depth = to_string(options_.conditions.depth);
   json judgement = {
-      {"format", "driftless-judgement/1"},
+      {"format", judgement_format},
       {"provenance", provenance(threads_, options_.conditions.seed, options_.command)},
-      {"depth", to_string(options_.conditions.depth)},
+      {"depth", depth},
       {"examinations", json::array()},
       {"methods", json::array()}};
   for (const auto* examination : examinations_) {
     judgement["examinations"].push_back({{"name", examination->name},
                                          {"title", examination->title},
-                                         {"question", examination->question}});
+                                         {"question", examination->question},
+                                         {"depth", depth},
+                                         {"commit", judgement["provenance"]["commit"]},
+                                         {"command", options_.command}});
   }
   for (const auto& candidate : candidates_) {
     judgement["methods"].push_back(method_record(candidate));
@@ -114,7 +120,48 @@ json Judgement::run() {
   return judgement;
 }
 
+std::set<std::string> names_of(const json& list) {
+  std::set<std::string> names;
+  for (const auto& one : list) names.insert(one["name"]);
+  return names;
+}
+
+const json& of_name(const json& list, const json& name) {
+  return *std::find_if(list.begin(), list.end(),
+                       [&](const json& one) { return one["name"] == name; });
+}
+
+/// "quick", "full", or "full and quick".
+std::string depths_of(const json& examinations) {
+  std::set<std::string> depths;
+  for (const auto& examination : examinations) depths.insert(examination["depth"]);
+  return fmt::format("{}", fmt::join(depths, " and "));
+}
+
 }  // namespace
+
+json united(const json& earlier, json judgement) {
+  const auto methods = names_of(judgement["methods"]);
+  if (names_of(earlier["methods"]) != methods) return judgement;
+  const auto fresh = names_of(judgement["examinations"]), kept = names_of(earlier["examinations"]);
+  json all = json::array();
+  for (const auto* examination : examinations()) {
+    const std::string name(examination->name);
+    if (fresh.count(name) > 0) {
+      all.push_back(of_name(judgement["examinations"], name));
+    } else if (kept.count(name) > 0) {
+      all.push_back(of_name(earlier["examinations"], name));
+      for (auto& method : judgement["methods"]) {
+        method["conclusions"][name] =
+            of_name(earlier["methods"], method["name"])["conclusions"][name];
+      }
+    }
+  }
+  judgement["examinations"] = all;
+  judgement["depth"] = depths_of(all);
+  judgement["trade"] = trade_front(judgement);
+  return judgement;
+}
 
 json run_judgement(const std::vector<Candidate>& candidates,
                    const std::vector<const Examination*>& examinations,

@@ -35,6 +35,10 @@ nlohmann::json run_judgement(const std::vector<Candidate>& candidates,
                              const std::vector<const Examination*>& examinations,
                              const JudgeOptions& options);
 
+/// A judgement with those examinations that it lacks from an earlier one of the same methods, each
+/// of which says by which command it was made; of other methods nothing is taken.
+nlohmann::json united(const nlohmann::json& earlier, nlohmann::json judgement);
+
 /// The judgement as Markdown: per method and examination the verdict, then every finding that
 /// fails.
 std::string judgement_summary(const nlohmann::json& judgement);

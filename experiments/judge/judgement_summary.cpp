@@ -29,6 +29,24 @@ std::string verdict_table(const json& judgement) {
   return text;
 }
 
+/// The command and the commit of every examination, those alike together.
+std::string origins(const json& judgement) {
+  std::vector<std::pair<std::string, std::string>> all;  // origin, names
+  for (const auto& examination : judgement["examinations"]) {
+    const auto name = examination["name"].get<std::string>();
+    const auto origin = fmt::format("`{}` (commit {})", examination["command"].get<std::string>(),
+                                    examination["commit"].get<std::string>().substr(0, 7));
+    if (!all.empty() && all.back().first == origin) {
+      all.back().second += ", " + name;
+    } else {
+      all.emplace_back(origin, name);
+    }
+  }
+  std::string text;
+  for (const auto& [origin, names] : all) text += fmt::format("- {}: {}\n", names, origin);
+  return text;
+}
+
 /// What fails, one line each; where the method claims the contrary it is said.
 std::string failures(const json& judgement) {
   std::string text;
@@ -58,13 +76,21 @@ std::optional<json> read_judgement(const std::filesystem::path& file_or_folder) 
     throw InputError(
         fmt::format("{}: is no judgement of format {}", file.string(), judgement_format));
   }
+  // Judgements whose examinations were all made at once said it once.
+  for (auto& examination : judgement["examinations"]) {
+    if (examination.contains("depth")) continue;
+    examination["depth"] = judgement["depth"];
+    for (const char* key : {"commit", "command"}) {
+      examination[key] = judgement["provenance"][key];
+    }
+  }
   return judgement;
 }
 
 std::string judgement_summary(const json& judgement) {
-  return fmt::format("# Judgement ({})\n\n{}\n## What fails\n\n{}",
-                     judgement["depth"].get<std::string>(), verdict_table(judgement),
-                     failures(judgement));
+  return fmt::format("# Judgement ({})\n\n{}\n{}\n## What fails\n\n{}",
+                     judgement["depth"].get<std::string>(), origins(judgement),
+                     verdict_table(judgement), failures(judgement));
 }
 
 std::filesystem::path write_judgement(const json& exact, const std::filesystem::path& directory) {

@@ -55,7 +55,7 @@ const judgement = {
   format: 'driftless-judgement/1',
   depth: 'quick',
   provenance: {command: 'driftless judge all', seed: 1},
-  examinations: [{name: 'stability', title: 'Stability', question: 'How large a step?'}],
+  examinations: [{name: 'stability', title: 'Stability', question: 'How large a step?', depth: 'quick'}],
   methods: [
     method('good', 1, [finding('energy', 'holds', 0.001, true)]),
     method('bad', 0.1, [finding('energy', 'fails', 0.3, true)]),

@@ -77,11 +77,11 @@ function draw_details(conclusion) {
 }
 
 function draw_examination() {
-  const {title, question} = judgement.examinations.find(({name}) => name === state.examination);
+  const {title, question, depth} = judgement.examinations.find(({name}) => name === state.examination);
   const method = judgement.methods.find(({name}) => name === state.method);
   const conclusion = method?.conclusions[state.examination];
   replace('examination-title', method ? `${title}: ${method.title}` : title);
-  replace('question', question);
+  replace('question', `${question} Depth ${depth}.`);
   fill_select(
     'examination',
     judgement.examinations.map(({name: value, title}) => ({value, title})),
