@@ -217,25 +217,34 @@ judge::Series line(const std::string& name, const Courses& courses, const Course
   return result;
 }
 
-Picture picture(const std::vector<Run>& runs, const Records& records, double until,
-                const char* title) {
+std::vector<judge::Series> internal_lines(const std::vector<Run>& runs, const Records& records,
+                                          double until) {
   const Courses six{runs[0], records}, two{runs[1], records}, weak{runs[2], records};
-  judge::Chart chart{title, {"t*"}, {"T*"}, {}};
-  chart.series = {line("kinetic", six, six.kinetic(), until),
-                  line("internal, 1/<1/theta>", six, six.internal(), until),
-                  line("internal, <theta>", six, six.mean(), until),
-                  line("internal, walls on two faces", two, two.internal(), until),
-                  line("internal, weaker contact", weak, weak.internal(), until)};
+  return {line("internal, 1/<1/theta>", six, six.internal(), until),
+          line("internal, <theta>", six, six.mean(), until),
+          line("1/<1/theta>, walls on two faces", two, two.internal(), until),
+          line("1/<1/theta>, weaker contact", weak, weak.internal(), until)};
+}
+
+Picture whole_course(const std::vector<Run>& runs, const Records& records) {
+  const char* const title = "MAN Fig. 3: cooling, then warming by the walls";
+  const Courses six{runs[0], records};
+  judge::Chart chart{title, {"t*"}, {"T*"}, internal_lines(runs, records, duration)};
+  chart.series.insert(chart.series.begin(), line("kinetic", six, six.kinetic(), duration));
   return {title, "Means over the runs; kinetic temperatures start at 0.", std::move(chart), {}};
+}
+
+Picture cooling(const std::vector<Run>& runs, const Records& records) {
+  const char* const title = "MAN Fig. 3: the cooling";
+  judge::Chart chart{title, {"t*"}, {"T*"}, internal_lines(runs, records, 8)};
+  return {title, "Means over the runs; all start at 1.", std::move(chart), {}};
 }
 
 Outcome conclude(const Conditions& conditions, const Records& records) {
   Outcome outcome;
   const auto runs = runs_of(conditions.effort);
   for (const auto& run : runs) add_rows(outcome, run, {run, records});
-  outcome.pictures = {
-      picture(runs, records, duration, "MAN Fig. 3: cooling, then warming by the walls"),
-      picture(runs, records, 8, "MAN Fig. 3: the cooling")};
+  outcome.pictures = {whole_course(runs, records), cooling(runs, records)};
   outcome.remarks = {
       "The size of the paper's run is taken to be that of its Fig. 1 and 2, 30000 particles. "
       "Neither how many faces are walls nor how strongly these conduct is known to us. Walls that "
