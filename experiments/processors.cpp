@@ -16,4 +16,10 @@ unsigned usable_processors() {
   return std::max(1U, std::thread::hardware_concurrency());
 }
 
+unsigned useful_threads(std::size_t particles) {
+  constexpr std::size_t particles_a_thread = 750;
+  const std::size_t worth = std::max<std::size_t>(1, particles / particles_a_thread);
+  return static_cast<unsigned>(std::min<std::size_t>(usable_processors(), worth));
+}
+
 }  // namespace driftless

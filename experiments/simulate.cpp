@@ -121,7 +121,8 @@ std::string summary_of(const SimulateArguments& arguments, const Simulation& sim
 std::string simulate(const SimulateArguments& arguments) {
   const Simulation simulation = read_simulation(arguments);
   const fs::path& checkpoint = simulation.files.checkpoint;
-  const unsigned threads = arguments.threads > 0 ? arguments.threads : usable_processors();
+  const unsigned threads =
+      arguments.threads > 0 ? arguments.threads : useful_threads(simulation.scene.particles);
   StepProgress progress(arguments.time_step, arguments.quiet);
   const InterruptNotice notice([&] { return progress.interruption(); });
 

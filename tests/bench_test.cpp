@@ -110,6 +110,12 @@ TEST(Bench, PlansCoverOneThreadAndAllCpus) {
   }
 }
 
+TEST(Bench, SmallSystemsAreForOneThread) {
+  EXPECT_EQ(useful_threads(100), 1U);
+  EXPECT_EQ(useful_threads(1'000'000), usable_processors());
+  EXPECT_LE(useful_threads(1500), 2U);
+}
+
 // A long run of 600 particles of this fluid has 6.03 pairs a particle, which fluctuate by 0.039; of
 // 2400 by half of that. Six standard deviations are a false alarm in 5e8; particles at random, at
 // 6.28, are beyond them.

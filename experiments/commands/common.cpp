@@ -9,8 +9,9 @@ namespace driftless::commands {
 
 void add_threads(CLI::App& command, unsigned& threads) {
   command
-      .add_option("-t,--threads", threads,
-                  "threads (default: as many as this process may use processors)")
+      .add_option(
+          "-t,--threads", threads,
+          "threads (default: as many as this process may use processors and have something to do)")
       ->check(CLI::Range(1U, 4096U));
 }
 
