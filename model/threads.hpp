@@ -29,8 +29,8 @@ class FunctionReference<void(Arguments...)> {
 
 /// The threads that work on one system. What they compute does not depend on how many there are:
 /// tasks at work at the same time touch nothing in common. Copies work in the same threads; a task
-/// may ask for tasks of its own. The first exception of a task ends the work, in so far as tasks that
-/// have not begun are left out, and is thrown again.
+/// may ask for tasks of its own. The first exception of a task ends the work, in so far as tasks
+/// that have not begun are left out, and is thrown again.
 class Threads {
  public:
   explicit Threads(unsigned count = 1);
