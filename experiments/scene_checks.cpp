@@ -5,6 +5,7 @@
 
 #include "experiments/driven_integrator.hpp"
 #include "experiments/scene_keys.hpp"
+#include "experiments/scene_part_checks.hpp"
 
 namespace driftless {
 namespace {
@@ -44,34 +45,35 @@ void check_box(const Scene& scene, const Fluid& fluid, const Location& location)
                           scene.particles, describe(side), describe(fluid.range()), allowed));
 }
 
+void check_exponents(const FluidParameters& fluid, const Location& location) {
+  constexpr double largest = 20;
+  for (const auto& [key, value] :
+       {std::pair("friction_temperature_exponent", fluid.friction_temperature_exponent),
+        std::pair("conduction_temperature_exponent", fluid.conduction_temperature_exponent)}) {
+    if (std::abs(value) <= largest) continue;
+    location.member(key).refuse(fmt::format("is {}; allowed is a number from -{} to {}",
+                                            describe(value), largest, largest));
+  }
+}
+
 void check_surroundings(const Scene& scene, const Fluid& fluid, const Location& location) {
   if (!(scene.sides.minCoeff() > 0)) {
     location.member("sides").refuse(
         "has a side that is not above 0; allowed are three numbers > 0");
   }
-  for (std::size_t face = 0; face < scene.walls.size(); ++face) {
-    if (scene.walls[face].has_value() == scene.walls[face ^ 1].has_value()) continue;
-    location.member("walls").refuse(
-        "has a wall at one side of the box alone; allowed are walls at both sides of an axis, such "
-        "as x_lower and x_upper");
-  }
+  check_walls(scene, location.member("walls"));
+  check_gravity(scene, location.member("gravity"));
   try {
     (void)fluid.within(scene_box(scene));
   } catch (const std::invalid_argument& error) {
     location.member("walls").refuse(std::string("do not fit the scene: ") + error.what());
   }
+  if (!scene.heat_slabs) return;
+  check_slabs(*scene.heat_slabs, location.member("heat_slabs"));
   try {
-    if (scene.heat_slabs) (void)driven(nullptr, scene, Noise(0, 0));
+    (void)driven(nullptr, scene, Noise(0, 0));
   } catch (const std::invalid_argument& error) {
     location.member("heat_slabs").refuse(std::string("do not fit the scene: ") + error.what());
-  }
-  double shares = 0;
-  for (const double share : scene.further_shares) shares += share;
-  if (!(shares < 1)) {
-    location.member("species").refuse(
-        fmt::format("has shares that add up to {}; allowed is below 1, the rest is the first "
-                    "species",
-                    describe(shares)));
   }
 }
 
@@ -189,6 +191,8 @@ void check_thermal_repulsion(const Scene& scene, const Location& location) {
 void check_scene(const Scene& scene, const Location& location) try {
   check_equation_of_state(scene.fluid, location);
   check_thermal_repulsion(scene, location);
+  check_exponents(scene.fluid, location);
+  check_species_pairs(scene, location.member("species_pairs"));
   const Fluid fluid(scene.fluid);
   if (scene.frozen && fluid.has_repulsion()) {
     location.member("repulsion")
@@ -197,6 +201,7 @@ void check_scene(const Scene& scene, const Location& location) try {
                             describe(scene.fluid.repulsion)));
   }
   check_bath(fluid, location);
+  check_species(scene, location);
   check_surroundings(scene, fluid, location);
   if (scene.layout == Layout::pairs) {
     check_pairs(scene, fluid, location);

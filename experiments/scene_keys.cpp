@@ -16,9 +16,6 @@ using nlohmann::json;
 
 json to_list(const Vector& v) { return {v[0], v[1], v[2]}; }
 
-constexpr std::array<const char*, 6> wall_names = {"x_lower", "x_upper", "y_lower",
-                                                   "y_upper", "z_lower", "z_upper"};
-
 const std::vector<std::pair<const char*, double Wall::*>>& wall_numbers() {
   static const std::vector<std::pair<const char*, double Wall::*>> numbers = {
       {"repulsion", &Wall::repulsion},   {"repulsion_range", &Wall::repulsion_range},
@@ -343,6 +340,11 @@ std::string_view of_conducting(const Scene& scene) {
              ? "isothermal is true and particles have no heat that they could exchange"
              : "";
 }
+std::string_view of_heat_forms(const Scene& scene) {
+  if (scene.fluid.isothermal) return of_conducting(scene);
+  return scene.fluid.heat_form == HeatForm::none ? "heat_form is \"none\" and nothing conducts"
+                                                 : "";
+}
 std::string_view of_closures(const Scene& scene) {
   return scene.fluid.isothermal
              ? "isothermal is true and neither coefficient depends on anything but the distance"
@@ -530,7 +532,7 @@ std::vector<SceneKey> keys_of_the_laws() {
           of_closures),
       plain<&FluidParameters::conduction_temperature_exponent>(
           "conduction_temperature_exponent", ValueRule::number(),
-          "the same of the coefficient that heat_form gives", of_conducting),
+          "the same of the coefficient that heat_form gives", of_heat_forms),
   };
 }
 

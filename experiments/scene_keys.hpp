@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,10 @@ struct SceneKey {
   std::string_view (*without_effect)(const Scene&) = nullptr;
   bool told_if_unusual = false;  ///< left out of what is written where it is as in most scenes
 };
+
+/// As in the key "walls", in the order of Box::walls.
+inline constexpr std::array<const char*, 6> wall_names = {"x_lower", "x_upper", "y_lower",
+                                                          "y_upper", "z_lower", "z_upper"};
 
 /// In the order in which they take effect.
 const std::vector<SceneKey>& scene_keys();

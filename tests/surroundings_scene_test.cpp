@@ -120,22 +120,69 @@ TEST(WalledScene, RefusesWhatMakesNoSense) {
                  "walls.x_upper.friction: is -1; allowed is a number >= 0");
   expect_refusal(changed(walled_scene(), "/walls/y_lower", json::object()),
                  "at one side of the box alone");
-  expect_refusal(changed(walled_scene(), "/gravity", {0, -1, 0}), "along one axis that has walls");
+  expect_refusal(changed(walled_scene(), "/gravity", {0, -1, 0}),
+                 "gravity: is [0, -1, 0]; allowed is a vector along one axis, which has walls");
   expect_refusal(changed(walled_scene(), "/species/0/share", 0.95), "add up to 1.05");
-  expect_refusal(changed(walled_scene(), "/species_pairs/0/first", 3), "number below that");
+  expect_refusal(changed(walled_scene(), "/species_pairs/0/first", 3),
+                 "species_pairs[0].first: is 3; allowed is an integer from 0 to 2");
   expect_refusal(changed(walled_scene(), "/sides", {1, 0, 1}), "sides");
   expect_refusal(changed(slab_scene(), "/heat_slabs/drive", "heatrate"),
                  "did you mean \"heat-rate\"?");
   expect_refusal(changed(slab_scene(), "/heat_slabs/hot/to", 80), "hot slab");
 }
 
+/// What would be taken without a word and have no effect, or another one than meant.
+TEST(WalledScene, RefusesWhatWouldHaveNoEffect) {
+  const auto with = [](json object, const json& more) {
+    object.merge_patch(more);
+    return object;
+  };
+  expect_refusal(with(walled_scene(), {{"walls", {{"z_lower", {{"friction", 2}}}}}}),
+                 "walls.z_lower.friction: is 2, but a wall without temperature is adiabatic");
+  auto isothermal = walled_scene();
+  for (const char* key : {"species", "species_pairs"}) isothermal.erase(key);
+  expect_refusal(with(isothermal, {{"isothermal", true}, {"initial_state", "canonical"}}),
+                 "walls.x_lower.temperature: is 1.3, but isothermal is true");
+  const auto pairs = [&](const json& list) {
+    return with(walled_scene(), {{"species_pairs", list}});
+  };
+  expect_refusal(pairs({{{"first", 0}, {"second", 1}, {"friction", 3}},
+                        {{"first", 1}, {"second", 0}, {"friction", 40}}}),
+                 "species_pairs[1]: is the pair of species 1 and 0 again");
+  expect_refusal(pairs({{{"first", 0}, {"second", 1}}}), "species_pairs[0]: gives no coefficient");
+  auto rare = walled_scene();
+  rare["species"][0]["share"] = 1e-9;
+  expect_refusal(rare, "species[0].share: is 1e-09, of which");
+  const auto slabs = [&](const json& more) { return with(slab_scene(), {{"heat_slabs", more}}); };
+  expect_refusal(slabs({{"hot_temperature", 2}}), "is of the drive \"temperatures\" alone");
+  expect_refusal(slabs({{"rate", nullptr}}), "heat_slabs.rate: is missing");
+  expect_refusal(slabs({{"drive", "velocity-exchange"}}), "is of the drive \"heat-rate\" alone");
+  expect_refusal(slabs({{"drive", "temperatures"},
+                        {"rate", nullptr},
+                        {"hot_temperature", 1},
+                        {"cold_temperature", 3}}),
+                 "heat_slabs.hot_temperature: is 1, not above cold_temperature");
+  const auto fluid = [](const json& more) {
+    json object = {{"preset", "soft-fluid"}};
+    object.merge_patch(more);
+    return object;
+  };
+  expect_refusal(fluid({{"friction_temperature_exponent", 1e6}}), "from -20 to 20");
+  expect_refusal(fluid({{"heat_form", "none"}, {"conduction_temperature_exponent", 1}}),
+                 "heat_form is \"none\" and nothing conducts");
+}
+
 TEST(DrivenScene, GivesWhatItTakesAndGoesOnWithTheSameBits) {
   for (const char* drive : {"heat-rate", "energy-exchange", "velocity-exchange", "temperatures"}) {
     auto object = slab_scene();
-    object["heat_slabs"]["drive"] = drive;
-    object["heat_slabs"]["hot_temperature"] = 1.2;
-    object["heat_slabs"]["cold_temperature"] = 0.8;
-    object["heat_slabs"]["period"] = 0.02;
+    auto& slabs = object["heat_slabs"];
+    slabs["drive"] = drive;
+    slabs["period"] = 0.02;
+    if (slabs["drive"] != "heat-rate") slabs.erase("rate");
+    if (slabs["drive"] == "temperatures") {
+      slabs["hot_temperature"] = 1.2;
+      slabs["cold_temperature"] = 0.8;
+    }
     const PreparedScene prepared(read(object), 3, 1);
     const auto make = [&] {
       return prepared.driven(
