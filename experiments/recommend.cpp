@@ -40,6 +40,12 @@ double read_tolerance(const std::string& text) {
                     "a percentage such as 0.5%",
                     printable(text)));
   }
+  if (!is_percent && *value >= 1) {
+    throw InputError(fmt::format(
+        "--tolerance: is \"{0}\", which as a share would be {1:g} %; allowed is a number "
+        "> 0 and < 1 such as 0.005, or a percentage such as {0}%",
+        printable(text), 100 * *value));
+  }
   return is_percent ? *value / 100 : *value;
 }
 

@@ -22,6 +22,12 @@ void check_reservoir(const Scene& scene, const Wall& wall, const Location& locat
     }
     return;
   }
+  if (wall.friction == 0 && wall.conduction == 0) {
+    location.member("temperature")
+        .refuse(fmt::format("is {}, but neither friction nor conduction is given, without which "
+                            "nothing is exchanged; allowed is to leave it out, or one of them > 0",
+                            describe(*wall.temperature)));
+  }
   const double bath = scene.fluid.temperature;
   if (!scene.fluid.isothermal || *wall.temperature == bath) return;
   location.member("temperature")
@@ -35,9 +41,10 @@ void check_reservoir(const Scene& scene, const Wall& wall, const Location& locat
 void check_walls(const Scene& scene, const Location& location) {
   for (std::size_t face = 0; face < scene.walls.size(); ++face) {
     if (scene.walls[face].has_value() != scene.walls[face ^ 1].has_value()) {
-      location.refuse(
-          "has a wall at one side of the box alone; allowed are walls at both sides of an axis, "
-          "such as x_lower and x_upper");
+      const auto there = scene.walls[face] ? face : face ^ 1;
+      location.refuse(fmt::format(
+          "has {}, a wall at one side of the box alone; allowed is to have {} too, or neither",
+          wall_names[there], wall_names[there ^ 1]));
     }
     if (!scene.walls[face]) continue;
     check_reservoir(scene, *scene.walls[face], location.member(wall_names[face]));

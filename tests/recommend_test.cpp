@@ -125,7 +125,7 @@ TEST_F(Recommend, RefusesInOneSentence) {
   const auto file = write(small_result(cells_));
   EXPECT_EQ(refused({{file}, "", "", "", ""}),
             "recommend needs --tolerance, such as 0.5%, or --budget");
-  for (const char* bad : {"0", "-1%", "half", "%", "1e999", "0.5%%", "nan", "0,5%", " 1"}) {
+  for (const char* bad : {"0", "-1%", "half", "%", "1e999", "0.5%%", "nan", "0,5%", " 1", "5"}) {
     EXPECT_EQ(refused({{file}, bad, "", "", ""}).find("--tolerance: is \""), 0U) << bad;
   }
   EXPECT_EQ(refused({{file}, "", "", "cheap", ""}).find("--budget: is \"cheap\""), 0U);

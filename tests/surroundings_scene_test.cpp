@@ -118,8 +118,9 @@ TEST(WalledScene, RefusesWhatMakesNoSense) {
                  "walls.x_upper.frictoin: is no key of a wall; did you mean \"friction\"?");
   expect_refusal(changed(walled_scene(), "/walls/x_upper/friction", -1),
                  "walls.x_upper.friction: is -1; allowed is a number >= 0");
-  expect_refusal(changed(walled_scene(), "/walls/y_lower", json::object()),
-                 "at one side of the box alone");
+  expect_refusal(
+      changed(walled_scene(), "/walls/y_lower", json::object()),
+      "walls: has y_lower, a wall at one side of the box alone; allowed is to have y_upper");
   expect_refusal(changed(walled_scene(), "/gravity", {0, -1, 0}),
                  "gravity: is [0, -1, 0]; allowed is a vector along one axis, which has walls");
   expect_refusal(changed(walled_scene(), "/species/0/share", 0.95), "add up to 1.05");
@@ -139,6 +140,8 @@ TEST(WalledScene, RefusesWhatWouldHaveNoEffect) {
   };
   expect_refusal(with(walled_scene(), {{"walls", {{"z_lower", {{"friction", 2}}}}}}),
                  "walls.z_lower.friction: is 2, but a wall without temperature is adiabatic");
+  expect_refusal(with(walled_scene(), {{"walls", {{"z_lower", {{"temperature", 2}}}}}}),
+                 "walls.z_lower.temperature: is 2, but neither friction nor conduction");
   auto isothermal = walled_scene();
   for (const char* key : {"species", "species_pairs"}) isothermal.erase(key);
   expect_refusal(with(isothermal, {{"isothermal", true}, {"initial_state", "canonical"}}),

@@ -83,7 +83,7 @@ void print_schema(const std::string& kind) {
 
 void add_lists(CLI::App& app) {
   app.add_subcommand("methods", "list the integrators")->callback(print_methods);
-  auto* scenes = app.add_subcommand("scenes", "list the scenes and every key they set");
+  auto* scenes = app.add_subcommand("scenes", "list the scenes and the keys they set");
   const auto as_json = std::make_shared<bool>(false);
   scenes->add_flag("--json", *as_json, "JSON alone");
   scenes->callback([as_json] { print_scenes(*as_json); });

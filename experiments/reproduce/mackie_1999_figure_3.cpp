@@ -174,7 +174,7 @@ void add_rows(Outcome& outcome, const Run& run, const Courses& courses) {
       Interval{0.98, 0.97, 0.99}, 0.01,
       fmt::format(
           "Without walls it would go down to {:.4f} and stay; the paper's \"about 0.98\" is "
-          "taken as +- 0.005.",
+          "taken as +- 0.01.",
           mixed_temperature()));
   add("least internal temperature 1/<1/theta>", courses.least(courses.internal()),
       Interval{0.98, 0.97, 0.99}, 0.01,

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <cmath>
 #include <numbers>
 
@@ -392,6 +394,8 @@ Picture pressure_picture(const Outcome& outcome, const std::vector<Run>& runs) {
           {run.layer().excluded, row.ours.value, row.ours.low, row.ours.high});
     }
   }
+  std::sort(measured.points.begin(), measured.points.end(),
+            [](const auto& a, const auto& b) { return a.x < b.x; });
   const double side = runs.front().side();
   for (const double layer : {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}) {
     line.points.push_back({layer, mackie_temperature * side / (side - 2 * layer), {}, {}});
