@@ -7,9 +7,8 @@
 namespace driftless {
 namespace {
 
-Scene mackie_scene(const char* name, const MackieFluid& fluid, double temperature) {
+Scene mackie_scene(const MackieFluid& fluid, double temperature) {
   Scene scene;
-  scene.name = scene.preset = name;
   scene.fluid = mackie_parameters(fluid);
   scene.fluid.temperature = scene.initial_temperature = temperature;
   scene.density = 1;
@@ -17,14 +16,13 @@ Scene mackie_scene(const char* name, const MackieFluid& fluid, double temperatur
 }
 
 Scene mackie_1999() {
-  Scene scene = mackie_scene("mackie-1999", mackie_liquid, mackie_temperature);
+  Scene scene = mackie_scene(mackie_liquid, mackie_temperature);
   scene.particles = 1000;
   return scene;
 }
 
 Scene soft_fluid() {
   Scene scene;
-  scene.name = scene.preset = "soft-fluid";
   scene.fluid = {.boltzmann = 1,
                  .mass = 1,
                  .temperature = 1,
@@ -48,7 +46,6 @@ Scene soft_fluid() {
 /// makes the two alike.
 Scene two_body() {
   Scene scene;
-  scene.name = scene.preset = "two-body";
   scene.fluid = {.boltzmann = 1,
                  .mass = 1,
                  .temperature = 1,
@@ -72,7 +69,6 @@ Scene two_body() {
 
 Scene groot_warren_1997() {
   Scene scene = soft_fluid();
-  scene.name = scene.preset = "groot-warren-1997";
   scene.fluid.heat_capacity = 1;
   scene.fluid.conduction = 0;
   scene.fluid.heat_form = HeatForm::none;
@@ -82,7 +78,7 @@ Scene groot_warren_1997() {
 }
 
 Scene box_scene() {
-  Scene scene = mackie_scene("mackie-1999-box", mackie_liquid, mackie_temperature);
+  Scene scene = mackie_scene(mackie_liquid, mackie_temperature);
   scene.particles = 30000;
   scene.walls.fill(mackie_reservoir(scene.fluid, mackie_temperature, mackie_repulsion));
   return scene;
@@ -91,7 +87,7 @@ Scene box_scene() {
 Scene roll_scene() {
   // Where heat in is heat out: from the walls' mean the fluid would take thousands of t* to it.
   constexpr double stationary = 1.42;
-  Scene scene = mackie_scene("mackie-1999-roll", mackie_gas, stationary);
+  Scene scene = mackie_scene(mackie_gas, stationary);
   scene.particles = 100000;
   scene.walls[0] = mackie_reservoir(scene.fluid, mackie_hot);
   scene.walls[1] = mackie_reservoir(scene.fluid, mackie_cold);
@@ -102,7 +98,6 @@ Scene roll_scene() {
 
 Scene slabs_scene() {
   Scene scene = soft_fluid();
-  scene.name = scene.preset = "soleymani-2020-slabs";
   scene.fluid.conduction = 300;
   scene.particles = 2160;
   scene.sides = Vector(6, 6, 20);
@@ -115,10 +110,9 @@ Scene slabs_scene() {
   return scene;
 }
 
-}  // namespace
-
-const std::vector<Preset>& presets() {
-  static const std::vector<Preset> all = {
+/// The scenes know nothing of their names yet.
+std::vector<Preset> without_names() {
+  return {
       {"mackie-1999", "The ideal fluid with friction and conduction of Mackie et al.",
        "Mackie, Bonet Avalos, Navas, Phys. Chem. Chem. Phys. 1, 2039 (1999), section 3: B = 0.01, "
        "C = 17, r* = 1.24, density* = 1, T* = 1.1, in units T_R = m = zeta_0 = 1",
@@ -151,6 +145,16 @@ const std::vector<Preset>& presets() {
        "capacity 60, conduction 300, a heat flux of 6 each way",
        slabs_scene()},
   };
+}
+
+}  // namespace
+
+const std::vector<Preset>& presets() {
+  static const std::vector<Preset> all = [] {
+    std::vector<Preset> named = without_names();
+    for (auto& preset : named) preset.scene.name = preset.scene.preset = preset.name;
+    return named;
+  }();
   return all;
 }
 
