@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "experiments/reproduce/experiments.hpp"
+#include "experiments/reproduce/interval_arithmetic.hpp"
 #include "experiments/reproduce/mackie_roll.hpp"
 
 namespace driftless::reproduce {
@@ -184,18 +185,6 @@ Row& add(Outcome& outcome, const char* quantity, const NamedRun& named, const ch
   outcome.rows.push_back(mackie_row(quantity, setting, unit, ours));
   outcome.rows.back().explanation = std::move(explanation);
   return outcome.rows.back();
-}
-
-Interval mean_of(const Interval& a, const Interval& b) {
-  const double value = 0.5 * (a.value + b.value);
-  const double spread = 0.25 * std::hypot(a.high - a.low, b.high - b.low);
-  return {value, value - spread, value + spread};
-}
-
-Interval ratio(const Interval& a, const Interval& b) {
-  const double value = a.value / b.value;
-  const double spread = std::hypot((a.high - a.low) / a.value, (b.high - b.low) / b.value) / 2;
-  return {value, value - std::abs(value) * spread, value + std::abs(value) * spread};
 }
 
 /// Rows of heat, for any run: what goes in comes out.

@@ -8,6 +8,7 @@
 #include "experiments/flux/equilibrium_run.hpp"
 #include "experiments/flux/slab_run.hpp"
 #include "experiments/reproduce/experiment.hpp"
+#include "experiments/reproduce/interval_arithmetic.hpp"
 
 /// What the experiments of Soleymani, Ripoll, Gompper and Fedosov, J. Chem. Phys. 152, 064112
 /// (2020), [So20], share. The paper's parameters are not known to us: these are ours.
@@ -55,12 +56,6 @@ const nlohmann::json* record_or_remark(const Records& records, const std::string
 
 /// Of an estimate {"mean", "error"}.
 Interval interval_of(const nlohmann::json& estimate);
-/// Value and interval in other units.
-Interval scaled(const Interval& interval, double factor);
-/// Of independent numbers, first order in their errors.
-Interval product(const Interval& one, const Interval& other);
-Interval ratio(const Interval& one, const Interval& other);
-
 judge::Point point_of(double x, const Interval& interval);
 /// An exact value.
 Interval exactly(double value);
