@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiments/compare/compare.hpp"
+#include "experiments/named_list.hpp"
 
 namespace driftless {
 namespace {
@@ -17,13 +18,6 @@ bool alike(const json& one, const json& other) {
   if (!one.is_number() || !other.is_number()) return one == other;
   const double a = one, b = other;
   return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
-}
-
-const json* scene_named(const json& result, const json& name) {
-  for (const auto& scene : result["scenes"]) {
-    if (scene["name"] == name) return &scene;
-  }
-  return nullptr;
 }
 
 bool same_cell(const json& one, const json& other) {
@@ -75,7 +69,8 @@ void require_same_scene(const json& base, const json& changed) {
 CommonCells common_cells(const json& base, const json& changed, const std::string& method) {
   require_same_durations(base, changed);
   for (const auto& scene : base["scenes"]) {
-    if (const json* other = scene_named(changed, scene["name"])) require_same_scene(scene, *other);
+    const json* other = find_named(changed["scenes"], scene["name"]);
+    if (other) require_same_scene(scene, *other);
   }
   CommonCells cells;
   for (const auto& cell : base["cells"]) {
@@ -85,8 +80,8 @@ CommonCells common_cells(const json& base, const json& changed, const std::strin
       cells.missing.push_back(&cell);
       continue;
     }
-    cells.common.push_back(
-        {scene_named(base, cell["scene"]), scene_named(changed, cell["scene"]), &cell, other});
+    cells.common.push_back({find_named(base["scenes"], cell["scene"]),
+                            find_named(changed["scenes"], cell["scene"]), &cell, other});
   }
   for (const auto& cell : changed["cells"]) {
     if (applies(&cell) && is_chosen(cell, method) && !applies(counterpart(cell, base)))

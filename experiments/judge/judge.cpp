@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 #include <set>
 
 #include "experiments/judge/trade.hpp"
 #include "experiments/kept_parts.hpp"
+#include "experiments/named_list.hpp"
 #include "experiments/processors.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/study_parts.hpp"
@@ -126,11 +126,6 @@ std::set<std::string> names_of(const json& list) {
   return names;
 }
 
-const json& of_name(const json& list, const json& name) {
-  return *std::find_if(list.begin(), list.end(),
-                       [&](const json& one) { return one["name"] == name; });
-}
-
 /// "quick", "full", or "full and quick".
 std::string depths_of(const json& examinations) {
   std::set<std::string> depths;
@@ -141,20 +136,15 @@ std::string depths_of(const json& examinations) {
 }  // namespace
 
 json united(const json& earlier, json judgement) {
-  const auto methods = names_of(judgement["methods"]);
-  if (names_of(earlier["methods"]) != methods) return judgement;
-  const auto fresh = names_of(judgement["examinations"]), kept = names_of(earlier["examinations"]);
-  json all = json::array();
-  for (const auto* examination : examinations()) {
-    const std::string name(examination->name);
-    if (fresh.count(name) > 0) {
-      all.push_back(of_name(judgement["examinations"], name));
-    } else if (kept.count(name) > 0) {
-      all.push_back(of_name(earlier["examinations"], name));
-      for (auto& method : judgement["methods"]) {
-        method["conclusions"][name] =
-            of_name(earlier["methods"], method["name"])["conclusions"][name];
-      }
+  if (names_of(earlier["methods"]) != names_of(judgement["methods"])) return judgement;
+  const json all =
+      united_by_name(examinations(), judgement["examinations"], earlier["examinations"]);
+  for (auto& method : judgement["methods"]) {
+    const json* before = find_named(earlier["methods"], method["name"]);
+    for (const auto& examination : all) {
+      const std::string name = examination["name"];
+      if (method["conclusions"].contains(name)) continue;
+      method["conclusions"][name] = (*before)["conclusions"][name];
     }
   }
   judgement["examinations"] = all;

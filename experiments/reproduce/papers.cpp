@@ -7,6 +7,7 @@
 
 #include "experiments/files.hpp"
 #include "experiments/json_text.hpp"
+#include "experiments/named_list.hpp"
 #include "experiments/page.hpp"
 #include "experiments/study.hpp"
 #include "experiments/text_file.hpp"
@@ -103,21 +104,8 @@ std::string rows_of(const json& experiment) {
 
 json united(const std::optional<json>& earlier, json papers) {
   if (!earlier) return papers;
-  const auto find = [](const json& list, std::string_view name) {
-    return std::find_if(list.begin(), list.end(),
-                        [&](const json& one) { return one["name"] == name; });
-  };
-  json all = json::array();
-  for (const auto* experiment : experiments()) {
-    for (const json* report : {static_cast<const json*>(&papers), &*earlier}) {
-      const auto& list = (*report)["experiments"];
-      const auto found = find(list, experiment->name);
-      if (found == list.end()) continue;
-      all.push_back(*found);
-      break;
-    }
-  }
-  papers["experiments"] = all;
+  papers["experiments"] =
+      united_by_name(experiments(), papers["experiments"], (*earlier)["experiments"]);
   return papers;
 }
 
