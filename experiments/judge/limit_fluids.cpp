@@ -127,10 +127,11 @@ std::vector<double> steps_from(double coarsest, int factor) {
 }
 
 constexpr unsigned fewest_replicas = 4;
+constexpr unsigned full_blocks = 10;
 
 /// Five relaxation times of the internal energies, then twenty with samples; as many replicas as a
 /// block has seconds for, at all time steps together.
-void schedule(Plan& plan, double seconds) {
+void schedule_within(Plan& plan, double seconds) {
   auto& study = plan.study;
   study.sample_every = study.time_steps.front();
   const double relaxation =
@@ -146,6 +147,21 @@ void schedule(Plan& plan, double seconds) {
   }
   const double replicas = seconds / (steps * plan.seconds_per_step);
   study.replicas = std::max(fewest_replicas, static_cast<unsigned>(std::lround(replicas)));
+}
+
+/// Depth quick spends `seconds`, depth full so many times as much in blocks that can be resumed.
+void schedule(Plan& plan, double seconds, double full_effort, const Conditions& conditions) {
+  const bool quick = conditions.depth == Depth::quick;
+  plan.blocks = quick ? 1 : full_blocks;
+  schedule_within(plan, quick ? seconds : seconds * full_effort / full_blocks);
+}
+
+/// By what depth quick resolves, depth full needs so many times its effort for five errors to stay
+/// within the tolerances. Without conduction there are few independent internal energies.
+double ideal_full_effort(double phi_over_k, bool conducts) {
+  if (phi_over_k > 50) return conducts ? 8 : 60;
+  if (phi_over_k > 10) return conducts ? 12 : 30;
+  return conducts ? 32 : 20;
 }
 
 double weight_volume(const FluidParameters& fluid) {
@@ -189,9 +205,7 @@ Plan ideal(double phi_over_k, FrictionClosure closure, bool conducts,
   // The less internal energy there is, the sooner a step's noise is larger.
   const double coarsest = phi_over_k > 50 ? 0.2 : phi_over_k > 10 ? 0.1 : 0.05;
   plan.study.time_steps = conducts ? steps_from(coarsest, 4) : steps_from(2 * coarsest, 2);
-  const bool quick = conditions.depth == Depth::quick;
-  schedule(plan, (conducts ? 6 : 5) * (quick ? 1 : 4));
-  plan.blocks = quick ? 1 : 10;
+  schedule(plan, conducts ? 6 : 5, ideal_full_effort(phi_over_k, conducts), conditions);
   return plan;
 }
 
@@ -208,9 +222,7 @@ Plan soft(FrictionClosure closure, const Conditions& conditions) {
   Plan plan{Family::soft, {}, 1, 6e-5, conditions.seed};
   plan.study.scenes = {scene};
   plan.study.time_steps = steps_from(0.04, 2);
-  const bool quick = conditions.depth == Depth::quick;
-  schedule(plan, quick ? 8 : 32);
-  plan.blocks = quick ? 1 : 10;
+  schedule(plan, 8, 20, conditions);
   return plan;
 }
 

@@ -56,14 +56,14 @@ LimitScene scene(double phi_over_k, FrictionClosure closure, HeatForm form,
   schedule.measure = 20;
   const bool quick = conditions.depth == Depth::quick;
   const std::size_t ensembles = phi_over_k > 50 ? 80 : phi_over_k > 10 ? 40 : 24;
-  schedule.ensembles = (quick ? 1 : 4) * ensembles;
+  schedule.ensembles = quick ? ensembles : 2 * ensembles;
   schedule.pairs.count = pairs_per_ensemble;
   LimitScene result{Family::pairs,
                     fmt::format("isolated pairs, {} closure, {} form of conduction, phi/k = {:g}",
                                 to_string(closure), to_string(form), phi_over_k),
                     bench.fluid,
                     {coarsest, coarsest / 2, coarsest / 4, coarsest / 16},
-                    quick ? 1U : 10U,
+                    quick ? 1U : 8U,
                     0,
                     {}};
   constexpr double seconds_per_pair_step = 2.5e-7;
