@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <iterator>
+#include <numeric>
 #include <string_view>
+#include <vector>
 
 #include "experiments/location.hpp"
 
@@ -80,7 +83,12 @@ void Trajectory::write(const std::string& text) {
 void Trajectory::sample(System& system, std::uint64_t step) {
   Text text;
   add_header(text, system, step, time_step_);
-  for (std::size_t i = 0; i < system.size(); ++i) add_particle(text, system, i);
+  // In the order of ids: storage changes its order, and not every reader follows ids.
+  const auto& id = system.state().id;
+  std::vector<std::size_t> place(system.size());
+  std::iota(place.begin(), place.end(), std::size_t{0});
+  std::sort(place.begin(), place.end(), [&](auto a, auto b) { return id[a] < id[b]; });
+  for (const std::size_t i : place) add_particle(text, system, i);
   write(fmt::to_string(text));
   ++frames_;
 }

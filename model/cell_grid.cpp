@@ -76,6 +76,14 @@ void CellGrid::sort(const State& state, const Threads& threads) {
   });
 }
 
+void CellGrid::follow_storage() {
+  for (std::uint32_t n = 0; n < particles_; ++n) {
+    entries_[n].place = n;
+    if (parts_ > 1) handed_out_[n] = {entries_[n].id, n, n};
+    cell_or_number_[n] = n;
+  }
+}
+
 void CellGrid::cut_parts(std::size_t parts) {
   parts_ = parts;
   part_of_cell_.resize(next_.size());

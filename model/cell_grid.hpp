@@ -48,6 +48,8 @@ class CellGrid {
 
   /// Sorts the particles anew.
   void sort(const State& state, const Threads& threads);
+  /// Takes the storage as having been brought into the order of cells.
+  void follow_storage();
 
   /// The particles in the order of cells; single precision carries `margin` more than the range.
   struct Entry {

@@ -589,6 +589,80 @@ TEST(Box, WrapsIntoTheBoxAndFindsTheShortestImage) {
 
 // ---- Few particles. ----------------------------------------------------------------------------
 
+/// More particles than may lie in any order, at random places.
+State large_state() {
+  State state;
+  Uniform uniform(11);
+  for (std::uint32_t i = 0; i < 12000; ++i) {
+    state.position.push_back(uniform.vector(0, 16));
+    state.velocity.push_back(uniform.vector(-1, 1));
+    state.internal_energy.push_back(uniform(20, 30));
+    state.id.push_back(i);
+  }
+  return state;
+}
+
+template <class Values>
+Values by_ids(const State& state, const Values& values) {
+  Values ordered(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) ordered[state.id[i]] = values[i];
+  return ordered;
+}
+
+/// The share of particles whose successor in storage is near.
+double share_beside_near(const State& state) {
+  double near = 0;
+  for (std::size_t i = 1; i < state.size(); ++i) {
+    near += (state.position[i] - state.position[i - 1]).norm() < 2;
+  }
+  return near / static_cast<double>(state.size());
+}
+
+TEST(Storage, OfALargeSystemComesIntoTheOrderOfCellsUnnoticed) {
+  const auto noise_free = [](const auto& p) {
+    return Transfer{0.01 * p.v * p.w_friction, 0.01 * (p.u_j - p.u_i), 0.01 * (p.u_i - p.u_j)};
+  };
+  for (const unsigned threads : {1U, 3U}) {
+    const Box box{Vector::Constant(16)};
+    const Fluid fluid(small_fluid(all_terms, 0.5));
+    System ordered(fluid, box, large_state(), Noise(4, 2)), other = ordered;
+    ordered.set_threads(threads);
+    const auto force = ordered.conservative_force();  // still in the order of ids
+    const auto evaluated = ordered.counters().pair_evaluations;
+    ordered.set_step(51);
+    other.set_step(52);
+    const State state = ordered.state();
+    EXPECT_LT(share_beside_near(other.state()), 0.05);
+    EXPECT_GT(share_beside_near(state), 0.9);
+    EXPECT_EQ(by_ids(state, state.position), other.state().position);
+    EXPECT_EQ(by_ids(state, state.velocity), other.state().velocity);
+    EXPECT_EQ(by_ids(state, state.internal_energy), other.state().internal_energy);
+    EXPECT_EQ(by_ids(state, ordered.conservative_force()), force);
+    EXPECT_EQ(ordered.counters().pair_evaluations, evaluated);
+    Exchange total, expected;
+    ordered.accumulate(noise_free, total);
+    other.accumulate(noise_free, expected);
+    EXPECT_EQ(by_ids(state, total.momentum), expected.momentum);
+    EXPECT_EQ(by_ids(state, total.energy), expected.energy);
+    ordered.move(0.01), other.move(0.01);
+    ordered.sweep(noise_free), other.sweep(noise_free);
+    EXPECT_EQ(by_ids(state, ordered.state().position), other.state().position);
+    EXPECT_EQ(by_ids(state, ordered.state().velocity), other.state().velocity);
+  }
+}
+
+TEST(Storage, OfAFewParticlesAndOfFrozenOnesStaysAsItIs) {
+  const auto id = shuffled_state(small_fluid(all_terms, 0.5)).id;
+  System few = small_system();
+  few.set_step(51);
+  EXPECT_EQ(few.state().id, id);
+  const State state = large_state();
+  System frozen(Fluid(small_fluid(all_terms, 0.5)), Box{Vector::Constant(16)}, state, Noise(4, 2),
+                true);
+  frozen.set_step(51);
+  EXPECT_EQ(frozen.state().id, state.id);
+}
+
 TEST(System, OfOneParticleHasNoPairs) {
   const auto f = small_fluid(all_terms, 1);
   State state;

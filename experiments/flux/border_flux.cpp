@@ -19,25 +19,26 @@ Carried BorderFlux::energy_of(System& system, std::size_t place) const {
 void BorderFlux::before(System& system) {
   energy_.resize(system.size());
   inside_.resize(system.size());
+  const State& state = system.state();
   for (std::size_t i = 0; i < system.size(); ++i) {
-    energy_[i] = energy_of(system, i);
-    inside_[i] = inside(system.state().position[i]);
+    energy_[state.id[i]] = energy_of(system, i);
+    inside_[state.id[i]] = inside(state.position[i]);
   }
 }
 
 void BorderFlux::after(System& system) {
   double gained_inside = 0, gained_outside = 0;
+  const State& state = system.state();
   for (std::size_t i = 0; i < system.size(); ++i) {
-    const Carried now = energy_of(system, i);
-    const bool is_inside = inside(system.state().position[i]), was_inside = inside_[i] != 0;
-    const double gain = now.total() - energy_[i].total();
+    const Carried now = energy_of(system, i), &then = energy_[state.id[i]];
+    const bool is_inside = inside(state.position[i]), was_inside = inside_[state.id[i]] != 0;
+    const double gain = now.total() - then.total();
     const double share = 0.5 * ((is_inside ? 1 : 0) + (was_inside ? 1 : 0));
     gained_inside += share * gain;
     gained_outside += (1 - share) * gain;
     if (is_inside == was_inside) continue;
-    const Carried mean{0.5 * (energy_[i].internal + now.internal),
-                       0.5 * (energy_[i].kinetic + now.kinetic),
-                       0.5 * (energy_[i].potential + now.potential)};
+    const Carried mean{0.5 * (then.internal + now.internal), 0.5 * (then.kinetic + now.kinetic),
+                       0.5 * (then.potential + now.potential)};
     (was_inside ? crossed_.by_leaving : crossed_.by_entering) += mean;
     ++(was_inside ? crossed_.leaving : crossed_.entering);
   }

@@ -66,7 +66,7 @@ class BorderFlux {
   int axis_;
   Slab region_;
   double reference_;
-  std::vector<Carried> energy_;
+  std::vector<Carried> energy_;  ///< by ids, which are 0 to N - 1, as below
   std::vector<char> inside_;
   Crossed crossed_;
 };

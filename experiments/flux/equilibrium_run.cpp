@@ -35,7 +35,8 @@ class Autocorrelation {
  public:
   explicit Autocorrelation(std::size_t lags) : sums_(lags, 0.0) {}
   void sample(const State& state) {
-    past_.push_front(state.velocity);
+    auto& present = past_.emplace_front(state.size());
+    for (std::size_t i = 0; i < state.size(); ++i) present[state.id[i]] = state.velocity[i];
     if (past_.size() > sums_.size()) past_.pop_back();
     if (past_.size() < sums_.size()) return;
     for (std::size_t lag = 0; lag < sums_.size(); ++lag) {
