@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "experiments/avalos_mackie_fluid.hpp"
 #include "experiments/mackie_fluid.hpp"
 #include "experiments/scene.hpp"
 
@@ -77,6 +78,31 @@ Scene groot_warren_1997() {
   return scene;
 }
 
+/// At X = C r*^5 = 50, where what particles carry and what they conduct are of one size.
+Scene avalos_mackie_1999() {
+  Scene scene;
+  scene.fluid = am99::fluid(am99::few, 50 / std::pow(am99::few, 5));
+  scene.particles = 1000;
+  scene.density = 1;
+  return scene;
+}
+
+/// An ideal fluid whose species differ in mass, heat capacity and the coefficients of every pair.
+Scene mixture_scene() {
+  Scene scene = soft_fluid();
+  auto& f = scene.fluid;
+  f.repulsion = 0;
+  f.conduction = 30;
+  f.further_species = {{.mass = 4, .heat_capacity = 100}, {.mass = 0.5, .heat_capacity = 30}};
+  f.pairs = {{.a = 0, .b = 1, .friction = 6, .conduction = 20},
+             {.a = 0, .b = 2, .friction = 3, .conduction = 40},
+             {.a = 1, .b = 1, .friction = 9, .conduction = 60},
+             {.a = 1, .b = 2, .friction = 4, .conduction = 10},
+             {.a = 2, .b = 2, .friction = 2, .conduction = 15}};
+  scene.further_shares = {0.3, 0.3};
+  return scene;
+}
+
 Scene box_scene() {
   Scene scene = mackie_scene(mackie_liquid, mackie_temperature);
   scene.particles = 30000;
@@ -128,6 +154,14 @@ std::vector<Preset> without_names() {
        "Groot, Warren, J. Chem. Phys. 107, 4423 (1997): a = 25, density 3, sigma = 3 (friction "
        "4.5), k T = 1, isothermal",
        groot_warren_1997()},
+      {"avalos-mackie-1999", "The ideal fluid whose transport Bonet Avalos and Mackie measured",
+       "Bonet Avalos, Mackie, J. Chem. Phys. 111, 5267 (1999), Fig. 1: n = 8, X = 50, density* = "
+       "T* = 1; B = 0.01 is chosen here",
+       avalos_mackie_1999()},
+      {"marsh-coveney-1998-mixture", "An ideal mixture of three species, each pair its own laws",
+       "Marsh, Coveney, J. Phys. A 31, 6561 (1998), section III, which simulates none; the numbers "
+       "are chosen here",
+       mixture_scene()},
       {"mackie-1999-box", "The equilibrium box of Mackie et al., between reservoirs on six faces",
        "Mackie, Bonet Avalos, Navas, Phys. Chem. Chem. Phys. 1, 2039 (1999), Fig. 1-3: 30000 "
        "particles, B = 0.01, C = 17, r* = 1.24, walls at T* = 1.1; the walls' repulsion, 1.8 "

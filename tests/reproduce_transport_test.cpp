@@ -197,6 +197,21 @@ TEST(AvalosMackieViscosity, FindsTheWavelengthOfAValue) {
   EXPECT_GT(row->ours.high, 5);
 }
 
+// ---- Coefficients with a law
+
+TEST(CoefficientLaws, SayWhetherAViscosityFollowsItsLaw) {
+  Records records;
+  for (const auto& part : coefficient_laws.parts(quick)) {
+    const bool is_wrong = part.name == "viscosity, law T*^2, T* = 1.4";
+    records[part.name] = estimate(is_wrong ? 1.2 : 1, 0.01);
+  }
+  const auto outcome = coefficient_laws.conclude(quick, records);
+  ASSERT_EQ(outcome.rows.size(), 8U);
+  const std::string viscosity = "viscosity over that of a constant coefficient of the law's value";
+  EXPECT_EQ(row_of(outcome, viscosity, "law T*^2 = 1.960 at T* = 1.4")->verdict, Verdict::differs);
+  EXPECT_EQ(row_of(outcome, viscosity, "law T*^2 = 0.490 at T* = 0.7")->verdict, Verdict::agrees);
+}
+
 TEST(AvalosMackie, PartsCanBeRun) {
   for (const auto& part : avalos_mackie_1999_viscosity.parts(quick)) {
     if (part.name != "r* = 1.24, wavelength 4") continue;

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "experiments/reproduce/avalos_mackie_1999_fluid.hpp"
+#include "experiments/avalos_mackie_fluid.hpp"
 #include "experiments/reproduce/estimates.hpp"
 #include "experiments/reproduce/experiments.hpp"
 #include "experiments/transport/ideal_runs.hpp"

@@ -6,6 +6,7 @@
 #define DRIFTLESS_EXPERIMENTS(EXPERIMENT)     \
   EXPERIMENT(avalos_mackie_1999_conductivity) \
   EXPERIMENT(avalos_mackie_1999_viscosity)    \
+  EXPERIMENT(coefficient_laws)                \
   EXPERIMENT(mackie_1999_figure_3)            \
   EXPERIMENT(mackie_1999_figures_1_2)         \
   EXPERIMENT(mackie_1999_figures_4_6)         \

@@ -182,7 +182,7 @@ void add_rows(Outcome& outcome, const Run& run, const Courses& courses) {
                   "which start alike, lowers it further than <theta>.",
                   1 / (1 + 2.5 * mackie_liquid.B)));
   add("time of the least 1/<1/theta>", courses.time_of_least(courses.internal()),
-      Interval{1, 0.2, 5}, 1, "\"t* about 1\", on a course over decades, is taken as 0.2 to 5.");
+      Interval{1, 0.2, 5}, 0.5, "\"t* about 1\", on a course over decades, is taken as 0.2 to 5.");
   outcome.rows.back().unit = "t*";
   add("time to stay within 1 % of 1.1",
       courses.time_above(courses.internal(), 0.99 * mackie_temperature), Interval{100, 50, 200},

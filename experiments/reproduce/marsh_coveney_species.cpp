@@ -42,21 +42,11 @@ Size size_of(Effort effort) {
   return {1500, 20, 410};
 }
 
-/// An ideal fluid whose species differ in mass, heat capacity and the coefficients of every pair.
 Scene scene_of(Kind kind, std::size_t particles) {
-  Scene scene = find_preset("soft-fluid")->scene;
+  Scene scene = find_preset("marsh-coveney-1998-mixture")->scene;
   scene.particles = particles;
-  auto& f = scene.fluid;
-  f.repulsion = 0;
-  f.conduction = 30;
-  f.further_species = {{.mass = 4, .heat_capacity = 100}, {.mass = 0.5, .heat_capacity = 30}};
-  f.pairs = {{.a = 0, .b = 1, .friction = 6, .conduction = 20},
-             {.a = 0, .b = 2, .friction = 3, .conduction = 40},
-             {.a = 1, .b = 1, .friction = 9, .conduction = 60},
-             {.a = 1, .b = 2, .friction = 4, .conduction = 10},
-             {.a = 2, .b = 2, .friction = 2, .conduction = 15}};
-  scene.further_shares = {0.3, 0.3};
   if (kind == Kind::isothermal) {
+    auto& f = scene.fluid;
     f.isothermal = true;
     f.heat_form = HeatForm::none;
     f.conduction = 0;

@@ -6,7 +6,7 @@
 
 /// The fluid of Bonet Avalos and Mackie, J. Chem. Phys. 111, 5267 (1999), in their units: m =
 /// zeta_0 = T_R = 1 and k = 1/2 make lengths, times and momenta theirs.
-namespace driftless::reproduce::am99 {
+namespace driftless::am99 {
 
 /// B = k/phi; the paper's own is not known to us, and only shares of k/phi depend on it.
 inline constexpr double heat_ratio = 0.01;
@@ -26,4 +26,4 @@ inline FluidParameters fluid(double range, double conduction) {
   return f;
 }
 
-}  // namespace driftless::reproduce::am99
+}  // namespace driftless::am99
