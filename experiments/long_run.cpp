@@ -40,10 +40,10 @@ json identity_of(const LongRunPlan& plan, const std::vector<Observation>& observ
   json identity = plan.identity;
   identity["time_step"] = plan.time_step;
   identity["first_step"] = plan.first;
-  json& observed = identity["observers"] = json::object();
+  // In words: where two runs differ a person is told the path.
   for (const auto& observation : observations) {
-    observed[observation.name] = {{"every", observation.every},
-                                  {"from", observation.from},
+    identity[observation.name] = {{"steps between samples", observation.every},
+                                  {"steps before the first sample", observation.from},
                                   {"settings", observation.observer->settings()}};
   }
   return identity;

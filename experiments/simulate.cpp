@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "experiments/files.hpp"
 #include "experiments/interrupt.hpp"
@@ -99,6 +100,24 @@ std::string last_values(const Monitor& monitor) {
   return text;
 }
 
+/// How far the energy of fluid and surroundings has moved, which is what is kept.
+std::string energy_change(const Monitor& monitor) {
+  constexpr double remarkable = 0.01;
+  double first = 0, last = 0;
+  for (const auto& column : monitor.columns()) {
+    if (column.name != "total_energy" && column.name != "surroundings_energy") continue;
+    first += column.values.front();
+    last += column.values.back();
+  }
+  const double change = (last - first) / std::abs(first);
+  std::string text =
+      fmt::format("Energy of fluid and surroundings since the start: {:+.2g} %", 100 * change);
+  if (std::abs(change) > remarkable) {
+    text += "; a smaller step, or a method that keeps it, is needed for more than a glance";
+  }
+  return text + "\n";
+}
+
 std::string summary_of(const SimulateArguments& arguments, const Simulation& simulation,
                        const Laboratory& laboratory) {
   const auto& files = simulation.files;
@@ -106,6 +125,8 @@ std::string summary_of(const SimulateArguments& arguments, const Simulation& sim
       fmt::format("{} by {}: {} steps of {}, to time {}\n{}\n", simulation.scene.name,
                   arguments.method, simulation.steps, describe(arguments.time_step),
                   describe(arguments.duration), last_values(laboratory.monitor));
+  // The bath of an isothermal fluid keeps no books.
+  if (!simulation.scene.fluid.isothermal) text += energy_change(laboratory.monitor);
   text += fmt::format("Trajectory: {} ({} frames)\n", files.trajectory.string(),
                       laboratory.trajectory.frames());
   if (simulation.has_fields) {

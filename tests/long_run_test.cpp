@@ -331,7 +331,8 @@ TEST_F(LongRun, RefusesTheCheckpointOfAnotherRun) {
   expect(other, "of another run: seed is 7 there and 8 here; allowed is");
   other = setting;
   other.frames_every = 4;
-  expect(other, "of another run: observers/trajectory/every is 3 there and 4 here; allowed is");
+  expect(other,
+         "of another run: trajectory/steps between samples is 3 there and 4 here; allowed is");
   other = setting;
   other.last = 4;
   expect(other, "after step 12 (time 0.048), beyond the end of this run after step 4");

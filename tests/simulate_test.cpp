@@ -166,6 +166,22 @@ TEST_F(Simulate, AFailureNamesTheStepAndIsExitCodeOne) {
   EXPECT_NE(done.text.find(" in step "), std::string::npos) << done.text;
 }
 
+TEST_F(Simulate, SaysHowFarTheEnergyHasMoved) {
+  const auto text = [&](const std::string& arguments, const std::string& output) {
+    return call(arguments + " -q -t 1 -o " + in(output)).text;
+  };
+  const auto kept = text(scene_ + " --method shardlow-s1 --time-step 0.01 --duration 0.1", "kept");
+  EXPECT_NE(kept.find("since the start: "), std::string::npos) << kept;
+  EXPECT_EQ(kept.find("is needed"), std::string::npos) << kept;
+  const auto lost =
+      text("soft-fluid --method avalos-mackie-explicit --time-step 0.08 --duration 8", "lost");
+  EXPECT_NE(lost.find("%; a smaller step, or a method that keeps it, is needed"), std::string::npos)
+      << lost;
+  const auto bath =
+      text("groot-warren-1997 --method groot-warren --time-step 0.01 --duration 0.1", "bath");
+  EXPECT_EQ(bath.find("since the start"), std::string::npos) << bath;
+}
+
 TEST_F(Simulate, FaultsAreOneSentenceAndWriteNothing) {
   const std::string output = " -o " + in("output");
   const std::string rest = " --method trotter --time-step 0.01 --duration 2" + output;
