@@ -29,6 +29,8 @@ class DrivenIntegrator : public Integrator {
     heater_.load({saved.begin() + 1, own});
     integrator_->load({own, saved.end()});
   }
+  bool may_reorder_storage() const override { return integrator_->may_reorder_storage(); }
+  void follow_storage(const Places& places) override { integrator_->follow_storage(places); }
 
  private:
   std::unique_ptr<Integrator> integrator_;

@@ -113,7 +113,7 @@ class Run {
  private:
   void do_step() {
     const std::uint64_t next = step_ + 1;
-    system_.set_step(next);
+    begin_step(system_, integrator_, next);
     try {
       integrator_.step(system_, plan_.time_step);
     } catch (const StepFailure& failure) {

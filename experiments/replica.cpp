@@ -49,7 +49,7 @@ ReplicaResult run_replica(const PreparedScene& prepared, const Study& study,
   result.replica = replica;
   const auto advance = [&](std::uint64_t steps) {
     for (std::uint64_t n = 0; n < steps; ++n) {
-      system.set_step(++result.steps);
+      begin_step(system, *integrator, ++result.steps);
       integrator->step(system, time_step);
     }
   };

@@ -27,7 +27,7 @@ class Runner {
     const double start = processor_seconds();
     try {
       for (std::uint64_t n = 0; n < steps; ++n) {
-        system_->set_step(++step_);
+        begin_step(*system_, *integrator_, ++step_);
         integrator_->step(*system_, cell_.time_step);
       }
     } catch (const StepFailure&) {

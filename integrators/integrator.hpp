@@ -37,7 +37,17 @@ class Integrator {
   /// What the scheme keeps between steps, for a checkpoint; empty if nothing.
   virtual std::vector<double> save() const { return {}; }
   virtual void load(const std::vector<double>& /*saved*/) {}
+
+  /// Whether the order of storage may change between steps: where nothing is kept, or where what is
+  /// kept comes along by follow_storage().
+  virtual bool may_reorder_storage() const { return save().empty(); }
+  virtual void follow_storage(const Places& /*places*/) {}
 };
+
+/// Names the step that the integrator is about to do. From time to time it orders the storage of a
+/// large system (System::order_storage), where the integrator lets it: whoever else keeps something
+/// of particles from step to step keeps it by ids.
+void begin_step(System& system, Integrator& integrator, std::uint64_t step);
 
 /// What a method promises of total energy, per step and in the mean; the suites hold it to it.
 enum class EnergyClaim { exact, drifts };

@@ -31,6 +31,8 @@ class IsoenergeticVerlet : public Integrator {
 
   std::vector<double> save() const override { return impulse_.save(); }
   void load(const std::vector<double>& saved) override { impulse_.load(saved); }
+  bool may_reorder_storage() const override { return true; }
+  void follow_storage(const Places& places) override { impulse_.follow_storage(places); }
 
  private:
   /// Impulse F dt and heat q dt of friction, noise and conduction.

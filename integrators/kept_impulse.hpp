@@ -29,6 +29,10 @@ class KeptImpulse {
   void apply(System& system, double share) const { system.apply(exchange_, share); }
   const Exchange& exchange() const { return exchange_; }
 
+  void follow_storage(const Places& places) {
+    follow(places, exchange_.momentum);
+    follow(places, exchange_.energy);
+  }
   std::vector<double> save() const {
     std::vector<double> saved = {evaluated_for_};
     for (const auto& momentum : exchange_.momentum) {

@@ -120,6 +120,17 @@ struct Exchange {
   void reset(std::size_t particles);
 };
 
+/// A change of the order of storage: what lies at place n was at places[n] before.
+using Places = std::vector<std::uint32_t>;
+
+/// Brings values along that lie in the order of storage, one for every particle.
+template <class Value>
+void follow(const Places& places, std::vector<Value>& values) {
+  if (values.size() != places.size()) return;
+  const auto before = values;
+  for (std::size_t n = 0; n < places.size(); ++n) values[n] = before[places[n]];
+}
+
 /// Why a step could not be completed.
 enum class FailureCause { non_finite, negative_internal_energy, not_converged, energy_runaway };
 

@@ -13,10 +13,6 @@ constexpr std::size_t pairs_a_chunk = 512;
 /// In a system of fewer particles several rounds share the geometry of the pairs, which takes 290
 /// bytes a particle at density 3; in larger ones it is computed anew.
 constexpr std::size_t most_with_geometry = 10000;
-/// In a system of more particles those of a cell are kept side by side in storage, too; fewer lie
-/// in the cache wherever they are. They come apart within a time of the order of a hundred steps.
-constexpr std::size_t most_in_any_order = 10000;
-constexpr std::uint64_t steps_in_order = 50;
 /// The other side of a contact is at rest, and no exchange exhausts it.
 constexpr Quadruple boundary_motion{0, 0, 0, 1e300};
 
@@ -92,31 +88,20 @@ PassSeconds System::pass_seconds() const {
   return sum;
 }
 
-void System::set_step(std::uint64_t step) {
-  noise_.set_step(step);
-  if (size() > most_in_any_order && !frozen_ && step % steps_in_order == 1) order_storage();
-}
-
-void System::order_storage() {
+Places System::order_storage() {
   find_pairs();
-  const auto order = [&](auto& values) {
-    if (values.empty()) return;
-    const auto before = values;
-    for_each_particle([&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) values[n] = before[cells_.place(n)];
-    });
-  };
-  order(state_.position);
-  order(state_.velocity);
-  order(state_.internal_energy);
-  order(state_.id);
-  order(state_.species);
-  if (conservative_version_ == positions_version_) {
-    order(conservative_.momentum);
-    order(conservative_.energy);
-  }
+  Places places(size());
+  for (std::size_t n = 0; n < size(); ++n) places[n] = cells_.place(n);
+  follow(places, state_.position);
+  follow(places, state_.velocity);
+  follow(places, state_.internal_energy);
+  follow(places, state_.id);
+  follow(places, state_.species);
+  follow(places, conservative_.momentum);
+  follow(places, conservative_.energy);
   cells_.follow_storage();
   factors_version_ = thermal_positions_version_ = 0;
+  return places;
 }
 
 void System::find_pairs() {

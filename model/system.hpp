@@ -52,9 +52,13 @@ class System {
   const Counters& counters() const { return counters_; }
   void count_solver_iteration() { ++counters_.solver_iterations; }
 
-  /// Names the step whose noise the kernels see next. From time to time it puts the storage of a
-  /// large system into the order of cells: what is kept of particles from step to step goes by ids.
-  void set_step(std::uint64_t step);
+  /// Names the step whose noise the kernels see next.
+  void set_step(std::uint64_t step) { noise_.set_step(step); }
+
+  /// Puts particles that are near each other side by side in storage, in which they drift apart as
+  /// they move: threads then share less memory. Arrays in the order of storage from before are void
+  /// unless they follow().
+  Places order_storage();
 
   /// How many threads work on this system; results are the same bits for any number.
   void set_threads(unsigned count);
@@ -168,8 +172,6 @@ class System {
   /// Makes cells, blocks and memory for as many particles and threads as there are.
   void cut_cells();
   void find_pairs();
-  /// Has the places in storage be those in the order of cells.
-  void order_storage();
   static constexpr auto nothing_to_prepare = [](std::size_t, std::size_t) {};
   using PairAnswer = FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)>;
   using ContactAnswer = FunctionReference<void(PairPass&, std::size_t, std::size_t)>;

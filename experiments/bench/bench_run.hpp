@@ -31,7 +31,7 @@ class BenchRun {
         integrator_(method.make({})) {}
 
   void advance() {
-    system_.set_step(++steps_);
+    begin_step(system_, *integrator_, ++steps_);
     integrator_->step(system_, bench_time_step);
   }
   System& system() { return system_; }

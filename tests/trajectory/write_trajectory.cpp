@@ -17,7 +17,7 @@ constexpr double step_size = 0.01;
 
 json to_json(const Vector& vector) { return {vector[0], vector[1], vector[2]}; }
 
-/// Writes down what a trajectory should hold.
+/// Writes down what a trajectory should hold, in the order of ids, which is the reverse of storage.
 class Witness : public Observer {
  public:
   void sample(System& system, std::uint64_t step) override {
@@ -25,9 +25,9 @@ class Witness : public Observer {
     json frame = {{"step", step},
                   {"time", static_cast<double>(step) * step_size},
                   {"lengths", to_json(system.box().lengths)},
-                  {"id", state.id},
                   {"periodic", {true, true, !system.box().is_walled(2)}}};
-    for (std::size_t i = 0; i < state.size(); ++i) {
+    for (std::size_t i = state.size(); i-- > 0;) {
+      frame["id"].push_back(state.id[i]);
       frame["position"].push_back(to_json(state.position[i]));
       frame["velocity"].push_back(to_json(state.velocity[i]));
       frame["mass"].push_back(system.mass(i));

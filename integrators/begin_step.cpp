@@ -1,0 +1,19 @@
+#include "integrators/integrator.hpp"
+
+namespace driftless {
+namespace {
+
+// Fewer particles lie in the cache in any order; many are far apart again after a hundred steps.
+constexpr std::size_t most_in_any_order = 10000;
+constexpr std::uint64_t steps_in_order = 50;
+
+}  // namespace
+
+void begin_step(System& system, Integrator& integrator, std::uint64_t step) {
+  system.set_step(step);
+  const bool is_due = step % steps_in_order == 1 && system.size() > most_in_any_order;
+  if (!is_due || system.frozen() || !integrator.may_reorder_storage()) return;
+  integrator.follow_storage(system.order_storage());
+}
+
+}  // namespace driftless
