@@ -23,7 +23,7 @@ struct Sizes {
 
 Sizes sizes(Depth depth) {
   if (depth == Depth::quick) return {{100000, 3}, {16000, 8}, {600, 4}};
-  return {{1000000, 30}, {160000, 80}, {10000, 70}};
+  return {{500000, 15}, {64000, 32}, {3000, 20}};
 }
 
 std::vector<Part> parts(const Candidate& candidate, const Conditions& conditions) {

@@ -160,7 +160,7 @@ Finding conclude(const Candidate& candidate, const Case& tested, Moment moment,
 }  // namespace
 
 std::vector<Part> stationary_parts(const Candidate& candidate, const Conditions& conditions) {
-  const std::size_t ensembles = conditions.depth == Depth::quick ? 400 : 10000;
+  const std::size_t ensembles = conditions.depth == Depth::quick ? 400 : 2400;
   std::vector<Part> parts;
   for (const auto& tested : cases(candidate.method())) {
     for (const double time_step : steps_of(candidate.method())) {
