@@ -90,8 +90,8 @@ double Run::heated_by(double rate) const {
 std::vector<Run> runs_of(Effort effort) {
   const bool full = effort == Effort::full;
   const double settle = full ? 100 : 20, brief = full ? 420 : 70;
-  return {{published, mackie_repulsion, 3, full ? 4U : 1U, settle, full ? 2600.0 : brief, full},
-          {splitting, mackie_repulsion, 3, full ? 4U : 1U, settle, full ? 2600.0 : brief, full},
+  return {{published, mackie_repulsion, 3, full ? 2U : 1U, settle, full ? 2600.0 : brief, full},
+          {splitting, mackie_repulsion, 3, full ? 2U : 1U, settle, full ? 2600.0 : brief, full},
           {published, mackie_repulsion, 1, 1, settle, brief, false},
           {splitting, {0, 1}, 3, 1, settle, brief, false},
           {published, {43, 0.62}, 3, 1, settle, brief, false},
