@@ -191,21 +191,18 @@ std::string traffic_table(const json& bench) {
   text += paragraph(
       "An estimate for a system beyond the cache, from the sizes of what is stored: each array "
       "counts once for each loop over it, read or written. Bytes of a part = in order + pairs per "
-      "particle x per pair + whole lines. Particles are stored in no particular order and worked "
-      "on "
-      "in the order of cells; what passes between the two moves a line of 64 bytes for each "
-      "number, "
-      "80 on average for three side by side. Tiles of 27 cells see 94 cells, their neighbours', in "
+      "particle x per pair. Particles lie nearly in the order of cells in which they are worked "
+      "on. Tiles of 27 cells see 94 cells, their neighbours', in "
       "eight passes: what they see counts 94/27 times. What a shared cache keeps from one pass to "
       "the next makes a step faster than this limit. The triad counts its writes once too.");
   for (const auto& [kernel, parts] : bench["scaling"]["traffic"].items()) {
     text += "<h3>" + escaped(kernel) +
             "</h3><div class=\"scroll\"><table><tr><th>part</th><th>in order</th><th>per pair</th>"
-            "<th>whole lines</th></tr>\n";
+            "</tr>\n";
     for (const auto& part : parts) {
       text += "<tr><td>" + escaped(part["part"].get<std::string>()) + "</td>" +
               cell(part["bytes_in_order"], "{:.0f}") + cell(part["bytes_per_pair"], "{:.0f}") +
-              cell(part["bytes_of_lines"], "{:.0f}") + "</tr>\n";
+              "</tr>\n";
     }
     text += "</table></div>\n";
   }

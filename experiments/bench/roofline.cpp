@@ -15,42 +15,39 @@ namespace {
 
 constexpr double number = sizeof(double), index = sizeof(std::uint32_t), vector = 3 * number,
                  quadruple = sizeof(Quadruple);
-constexpr double line = 64;
-constexpr double vector_line = line * (1 + 2.0 / 8);  // 2 of 8 places lie across two lines
 constexpr double halo = 94.0 / 27;
 constexpr double pair = 2 * index;
+constexpr double motion = vector + number;
 
 // Once for each set of positions; model/cell_grid.cpp and model/pairs.cpp.
 constexpr Traffic sort = {"particles into cells",
-                          vector +                     // positions
-                              3 * index + index +      // cells written, read twice; ids
-                              2 * number +             // entries read; grid's counters, about
-                              quadruple +              // position by cells
-                              3 * sizeof(float),       // and in single precision
-                          0, 2 * line + vector_line};  // entries written; positions fetched
-constexpr Traffic search = {"pairs found", 3 * sizeof(float) + 2 * index, pair, 0};
+                          vector +                 // positions
+                              3 * index + index +  // cells written, read twice; ids
+                              2 * number +         // entries read; grid's counters, about
+                              quadruple +          // position by cells
+                              3 * sizeof(float) +  // and in single precision
+                              2 * index + vector,  // entries written; positions fetched
+                          0};
+constexpr Traffic search = {"pairs found", 3 * sizeof(float) + 2 * index, pair};
 
 // Velocities and energies into the order of cells.
-constexpr Traffic gather = {"motion by cells", 2 * index + quadruple, 0, vector_line + line};
+constexpr Traffic gather = {"motion by cells", 2 * index + quadruple + motion, 0};
 // And sums, or motion, back.
-constexpr Traffic scatter = {"results by particles", 2 * index + quadruple, 0,
-                             2 * vector_line + 2 * line};
+constexpr Traffic scatter = {"results by particles", 2 * index + quadruple + 2 * motion, 0};
 // A sum over pairs of what depends on positions alone: sums cleared, then read and written.
 constexpr Traffic repulsion = {"pass over pairs: repulsion",
-                               quadruple + halo*(quadruple + 2 * quadruple), pair, 0};
+                               quadruple + halo*(quadruple + 2 * quadruple), pair};
 constexpr Traffic exchange = {"pass over pairs: exchange",
-                              quadruple + halo*(2 * quadruple + 2 * index + 2 * quadruple), pair,
-                              0};
+                              quadruple + halo*(2 * quadruple + 2 * index + 2 * quadruple), pair};
 // Pairs put into groups, an order of them, then visited; the particles' motion itself is changed.
-constexpr Traffic groups = {"pairs into groups", halo * 2 * number, pair + index, 0};
+constexpr Traffic groups = {"pairs into groups", halo * 2 * number, pair + index};
 constexpr Traffic sweep = {"pass over pairs: sweep", halo*(quadruple + 2 * index + 2 * quadruple),
-                           pair + index, 0};
+                           pair + index};
 
-constexpr double motion = vector + number;
-constexpr Traffic check = {"check of the motion", motion, 0, 0};
-constexpr Traffic move = {"move", 2 * vector + vector, 0, 0};
-constexpr Traffic apply = {"exchange applied", motion + 2 * motion, 0, 0};
-constexpr Traffic kick = {"kick", vector + 2 * vector, 0, 0};
+constexpr Traffic check = {"check of the motion", motion, 0};
+constexpr Traffic move = {"move", 2 * vector + vector, 0};
+constexpr Traffic apply = {"exchange applied", motion + 2 * motion, 0};
+constexpr Traffic kick = {"kick", vector + 2 * vector, 0};
 
 }  // namespace
 
@@ -68,7 +65,7 @@ std::vector<Traffic> step_traffic(const std::string& kernel) {
 double bytes_per_step(const std::string& kernel, double pairs_per_particle) {
   double sum = 0;
   for (const auto& part : step_traffic(kernel)) {
-    sum += part.in_order + part.per_pair * pairs_per_particle + part.lines;
+    sum += part.in_order + part.per_pair * pairs_per_particle;
   }
   return sum;
 }

@@ -18,15 +18,12 @@ struct Traffic {
   const char* part;
   double in_order;  ///< bytes of arrays read or written one after the other
   double per_pair;  ///< bytes for each pair of a particle
-  double lines;     ///< bytes of whole cache lines, where particles are met in another order
 };
 
 /// An estimate for a system beyond the cache, from the sizes of what is stored: every array counts
-/// once for each loop over it, read or written. Particles are stored in no particular order and
-/// worked on in the order of cells: what passes between the two moves a cache line of 64 bytes for
-/// each number, and 80 on average for three numbers of 8 that may lie across two. Tiles of 3 x 3 x
-/// 3 cells see 94 cells, their neighbours', and the eight colours pass one after the other, so that
-/// what a tile sees is fetched 94/27 times.
+/// once for each loop over it, read or written. Particles lie nearly in the order of cells in which
+/// they are worked on (begin_step). Tiles of 3 x 3 x 3 cells see 94 cells, their neighbours', and
+/// the eight colours pass one after the other, so that what a tile sees is fetched 94/27 times.
 std::vector<Traffic> step_traffic(const std::string& kernel);
 /// Sum over the parts.
 double bytes_per_step(const std::string& kernel, double pairs_per_particle);

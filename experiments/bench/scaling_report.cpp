@@ -63,8 +63,7 @@ nlohmann::json traffic_json() {
     for (const auto& part : step_traffic(kernel.name)) {
       all[kernel.name].push_back({{"part", part.part},
                                   {"bytes_in_order", part.in_order},
-                                  {"bytes_per_pair", part.per_pair},
-                                  {"bytes_of_lines", part.lines}});
+                                  {"bytes_per_pair", part.per_pair}});
     }
   }
   return all;
