@@ -69,6 +69,8 @@ function spec_of(chart, labels, place) {
   if (!rows.length) return null;
   const {x, y, floor} = encodings(chart, rows);
   const {colour, shape} = method_scales(labels);
+  const theory = new Set(chart.series.filter(({marks}) => marks === 'line').map(({name}) => name));
+  shape.range = shape.range.map((mark, index) => (theory.has(labels[index]) ? 'stroke' : mark));
   const drawn = labels.filter((label) => rows.some((row) => row.name === label));
   const legend = {title: null, values: drawn, symbolOpacity: 1, labelLimit: 460, ...place};
   const channel = (scale) => ({field: 'name', type: 'nominal', scale, legend});
@@ -77,11 +79,13 @@ function spec_of(chart, labels, place) {
   const cut = (row) =>
     floor === undefined ? row : {...row, lower: Math.max(row.lower, floor)};
   const picked = [{name: 'picked', select: {type: 'point', fields: ['name']}, bind: 'legend'}];
+  // Beside lines of theory measured points stand for themselves.
+  const joined = theory.size ? "datum.marks === 'line'" : "datum.marks !== 'apart'";
   // A layer without rows would leave its axes without an extent.
   const pointed = rows.some(({marks}) => marks !== 'line');
   const lines = {
     ...(pointed ? {} : {params: picked}),
-    transform: [{filter: "datum.marks !== 'apart'"}],
+    transform: [{filter: joined}],
     mark: {type: 'line', strokeWidth: 1.4},
     encoding: {x, y, stroke, order: {field: 'x', type: 'quantitative'}, opacity},
   };
