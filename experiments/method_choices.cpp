@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <exception>
 
 #include "experiments/study_parts.hpp"
@@ -72,19 +74,6 @@ MethodChoice read_method(const json& value, const Location& location) {
   return choice;
 }
 
-/// Whether two choices run the same: options that are left out have their defaults.
-bool same(const MethodChoice& a, const MethodChoice& b) {
-  if (a.name != b.name) return false;
-  const auto value = [](const MethodChoice& choice, const OptionSpec& spec) {
-    const auto given = choice.options.find(std::string(spec.name));
-    return given == choice.options.end() ? spec.fallback : given->second;
-  };
-  for (const auto& spec : find_method(a.name)->options) {
-    if (value(a, spec) != value(b, spec)) return false;
-  }
-  return true;
-}
-
 void add(const MethodChoice& choice, const Location& location, std::vector<MethodChoice>& chosen) {
   for (const auto& other : chosen) {
     if (!same(choice, other)) continue;
@@ -115,6 +104,35 @@ json choice_schema(const Method& method) {
 }
 
 }  // namespace
+
+std::string to_string(const MethodChoice& choice) {
+  std::string text = choice.name;
+  const char* separator = ":";
+  for (const auto& [option, value] : choice.options) {
+    text += separator + option + "=";
+    text += std::visit(
+        [](const auto& given) {
+          using Value = std::decay_t<decltype(given)>;
+          if constexpr (std::is_same_v<Value, double>) return fmt::format("{:g}", given);
+          return fmt::format("{}", given);
+        },
+        value);
+    separator = ",";
+  }
+  return text;
+}
+
+bool same(const MethodChoice& one, const MethodChoice& other) {
+  if (one.name != other.name) return false;
+  const auto value = [](const MethodChoice& choice, const OptionSpec& spec) {
+    const auto given = choice.options.find(std::string(spec.name));
+    return given == choice.options.end() ? spec.fallback : given->second;
+  };
+  for (const auto& spec : find_method(one.name)->options) {
+    if (value(one, spec) != value(other, spec)) return false;
+  }
+  return true;
+}
 
 std::vector<MethodChoice> read_methods(const json& value, const Location& location) {
   const bool all = value.is_string() && value == everything;

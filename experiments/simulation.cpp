@@ -45,11 +45,7 @@ Scene read_simulated_scene(const std::string& text) {
 }
 
 MethodChoice read_simulated_method(const std::string& text, const Scene& scene) {
-  const auto candidates = judge::read_candidates({text});
-  if (candidates.size() != 1) {
-    argument("--method").refuse("is " + describe(json(text)) + "; allowed is one method");
-  }
-  const MethodChoice choice = candidates.front().choice;
+  const MethodChoice choice = judge::read_method_option(text);
   if (const auto reason = refusal(*find_method(choice.name), Fluid(scene.fluid), choice.options)) {
     argument("--method")
         .refuse("is " + describe(json(text)) + ", which cannot run this scene: " + *reason);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "experiments/location.hpp"
@@ -14,6 +15,10 @@ namespace driftless {
 std::vector<MethodChoice> read_methods(const nlohmann::json& value, const Location& location);
 nlohmann::json methods_schema();
 nlohmann::json to_json(const MethodChoice& choice);
+/// As on a command line: "groot-warren", or with options "groot-warren:lambda=0.5".
+std::string to_string(const MethodChoice& choice);
+/// Whether two choices run the same: options that are left out have their defaults.
+bool same(const MethodChoice& one, const MethodChoice& other);
 
 /// {"equilibrate", "measure", "sample_every"}: whole numbers of samples, neither few nor too many.
 void read_duration(const nlohmann::json& value, const Location& location, Study& study);

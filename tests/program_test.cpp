@@ -95,6 +95,21 @@ TEST_F(Program, ABadStudyEndsWithTwoInOneSentenceAndWritesNothing) {
   EXPECT_FALSE(fs::exists(output));
 }
 
+TEST_F(Program, AMethodThatCannotRunAnExperimentEndsWithTwoInOneSentenceAndWritesNothing) {
+  const auto output = folder_ / "output";
+  for (const auto& [method, words] :
+       {std::pair("espanol", "cannot run mackie-1999-walls: espanol is built for"),
+        std::pair("shardlow-s9", "did you mean \"shardlow-s"),
+        std::pair("all", "allowed is one method")}) {
+    const auto outcome = call(std::string("reproduce mackie-1999-walls --quick --method ") +
+                              method + " -o " + output.string());
+    EXPECT_EQ(outcome.code, 2) << outcome.text;
+    EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
+    EXPECT_NE(outcome.text.find(words), std::string::npos) << outcome.text;
+  }
+  EXPECT_FALSE(fs::exists(output));
+}
+
 TEST_F(Program, AMissingStudyOrResultEndsWithTwo) {
   for (const std::string verb : {"check ", "run ", "report "}) {
     const auto outcome = call(verb + (folder_ / "missing.json").string());

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -43,17 +44,57 @@ json replica(double ratio, double end, std::size_t seed) {
   return record;
 }
 
+/// A method that any experiment takes and that tells when it is run.
+struct Called {};
+
+class Caller : public Integrator {
+ public:
+  void step(System&, double) override { throw Called(); }
+};
+
+const MethodChoice& caller() {
+  static const MethodChoice choice = [] {
+    Method method;
+    method.name = "reproduce-caller";
+    method.isothermal = true;
+    method.runs_thermal_repulsion = with_any_options;
+    method.closures = {FrictionClosure::noise, FrictionClosure::friction};
+    method.make = [](const Options&) -> std::unique_ptr<Integrator> {
+      return std::make_unique<Caller>();
+    };
+    register_method(method);
+    return MethodChoice{"reproduce-caller", {}};
+  }();
+  return choice;
+}
+
+TEST(ReproduceMethod, TheChosenMethodIsWhatRuns) {
+  const Conditions chosen{Effort::quick, 1, caller()};
+  for (const auto* one : experiments()) {
+    if (one->unsuited && one->unsuited(caller())) {
+      EXPECT_EQ(one->name, "methods-transport");
+      continue;
+    }
+    const auto parts = one->parts(chosen);
+    // Particles that lie still have no method.
+    const auto first = std::find_if(parts.begin(), parts.end(), [](const Part& part) {
+      return !part.name.starts_with("network");
+    });
+    EXPECT_THROW(first->run({}), Called) << one->name << ": " << first->name;
+  }
+}
+
 /// `ratio(step)`; the published scheme's replicas fail at `end` above the step 0.1.
 template <class Ratio>
-Outcome temperatures(Ratio&& ratio, double end) {
+Outcome temperatures(Ratio&& ratio, double end, const Conditions& conditions = quick) {
   const auto& asked = experiment("soleymani-2020-figure-1");
   Records records;
-  for (const auto& part : asked.parts(quick)) {
+  for (const auto& part : asked.parts(conditions)) {
     const double step = step_of(part.name);
     const bool fails = step > 0.1 && part.name.starts_with("isoenergetic");
     records[part.name] = replica(ratio(step), fails ? end : 60, records.size());
   }
-  return asked.conclude(quick, records);
+  return asked.conclude(conditions, records);
 }
 
 double quadratic(double step) { return 1 + 0.5 * step * step / (0.106 * 0.106); }
@@ -73,6 +114,15 @@ TEST(SoleymaniFigure1, TheStepOfTheWantedDifferenceIsFound) {
   ASSERT_TRUE(greatest);
   EXPECT_NEAR(greatest->ours.value, quadratic(0.12) - 1, 2e-3);
   EXPECT_EQ(greatest->verdict, Verdict::agrees);
+}
+
+TEST(SoleymaniFigure1, AnotherMethodStandsBesideThePapersValue) {
+  const Conditions chosen{Effort::quick, 1, MethodChoice{"peters", {}}};
+  const auto outcome = temperatures(quadratic, 60, chosen);
+  EXPECT_EQ(row_of(outcome, "T_kin/T_int", "isoenergetic"), nullptr);
+  ASSERT_TRUE(row_of(outcome, "T_kin/T_int", "peters, step 0.01"));
+  EXPECT_EQ(row_of(outcome, "T_kin/T_int", "peters")->verdict, Verdict::agrees);
+  EXPECT_EQ(row_of(outcome, "T_kin/T_int", "shardlow-s1")->verdict, Verdict::ours_alone);
 }
 
 TEST(SoleymaniFigure1, TemperaturesApartAtASmallStepAreADifference) {
@@ -103,8 +153,8 @@ TEST(TemperatureRuns, AnIdealFluidHasItsExactTemperaturesAndNoStructure) {
   runs.scene.fluid.repulsion = 0;
   std::vector<json> replicas;
   for (unsigned n = 0; n < runs.replicas; ++n) {
-    replicas.push_back(run_temperatures(runs, "shardlow-s1", 0.05, n, 1));
-    EXPECT_EQ(run_temperatures(runs, "shardlow-s1", 0.05, n, 1), replicas.back());
+    replicas.push_back(run_temperatures(runs, {"shardlow-s1", {}}, 0.05, n, 1));
+    EXPECT_EQ(run_temperatures(runs, {"shardlow-s1", {}}, 0.05, n, 1), replicas.back());
   }
   const TemperatureCell cell(replicas);
   ASSERT_TRUE(cell.ran());
@@ -133,7 +183,7 @@ TEST(TemperatureRuns, AnIdealFluidHasItsExactTemperaturesAndNoStructure) {
 TEST(TemperatureRuns, AFailureKeepsWhatWasMeasuredBefore) {
   TemperatureRuns runs{find_preset("soft-fluid")->scene, 1, 60};
   runs.scene.particles = 150;
-  const auto record = run_temperatures(runs, "isoenergetic-verlet", 0.3, 0, 1);
+  const auto record = run_temperatures(runs, {"isoenergetic-verlet", {}}, 0.3, 0, 1);
   ASSERT_TRUE(record.contains("failure"));
   EXPECT_FALSE(record["times"].empty());
   EXPECT_FALSE(TemperatureCell(std::vector<json>{record}).ran());
@@ -177,11 +227,11 @@ TEST(MarshCoveneyEntropy, AChangeTheWrongWayIsADifference) {
 
 /// Replicas of the fluids with temperatures that are off by `slope` times the step, alike in all
 /// species but the last, which is off by another 5 % if `broken`.
-Outcome species(double slope, bool broken) {
+Outcome species(double slope, bool broken, const Conditions& conditions = quick) {
   const auto& asked = experiment("marsh-coveney-1998-species");
   Records records;
-  for (const auto& part : asked.parts(quick)) {
-    if (part.name.starts_with("marsh-coveney: ")) {
+  for (const auto& part : asked.parts(conditions)) {
+    if (part.name.find(": ") != std::string::npos) {
       records[part.name] = course(3);
       continue;
     }
@@ -191,7 +241,7 @@ Outcome species(double slope, bool broken) {
     if (broken) means[2] += 0.05;
     records[part.name] = {{"means", means}};
   }
-  return asked.conclude(quick, records);
+  return asked.conclude(conditions, records);
 }
 
 TEST(MarshCoveneySpecies, AnErrorOfTheStepIsGoneAtVanishingSteps) {
@@ -212,6 +262,15 @@ TEST(MarshCoveneySpecies, AnErrorOfTheStepIsGoneAtVanishingSteps) {
   }
   EXPECT_EQ(outcome.rows.size(), 4U * (3 + 6) + 4);
   EXPECT_EQ(outcome.pictures.size(), 3U);
+}
+
+TEST(MarshCoveneySpecies, AnotherMethodIsNotExplainedAsThePapers) {
+  const Conditions chosen{Effort::quick, 1, MethodChoice{"shardlow-s1", {}}};
+  const auto outcome = species(2, false, chosen);
+  ASSERT_TRUE(row_of(outcome, "T_kin/T of species 2", "shardlow-s1, isothermal fluid, at van"));
+  for (const auto& row : outcome.rows) {
+    EXPECT_EQ(row.explanation.find("explicit step"), std::string::npos) << row.setting;
+  }
 }
 
 TEST(MarshCoveneySpecies, ASpeciesOfAnotherTemperatureIsADifference) {

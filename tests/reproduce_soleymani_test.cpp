@@ -258,17 +258,17 @@ TEST(SoleymaniFigures23, AnIdealFluidHasOnePressureAndTheCurvatureOfTheory) {
 
 // ---- Fig. 5, 6
 
-Outcome crossings(double sum) {
+Outcome crossings(double sum, const Conditions& conditions = quick) {
   const auto& asked = experiment("soleymani-2020-figures-5-6");
   Records records;
-  for (const auto& part : asked.parts(quick)) {
+  for (const auto& part : asked.parts(conditions)) {
     json crossed;
     for (const auto& key : flux::crossed_keys()) crossed[key] = estimate(1);
     const bool planted = part.name == common + ", isoenergetic-verlet, conduction 100";
     crossed["sum by laws"] = estimate(planted ? sum : 6);
     records[part.name] = {{"crossed", crossed}};
   }
-  return asked.conclude(quick, records);
+  return asked.conclude(conditions, records);
 }
 
 TEST(SoleymaniFigures56, ASumThatIsNotTheImposedFluxIsADifference) {
@@ -282,6 +282,35 @@ TEST(SoleymaniFigures56, ASumThatIsNotTheImposedFluxIsADifference) {
     EXPECT_EQ(agree + differ, 14);
     EXPECT_EQ(differ, sum == 6 ? 0 : 1);
   }
+}
+
+TEST(SoleymaniFigures56, AnotherMethodIsComparedAndNotExplainedAsThePapers) {
+  const auto speaks_of_paper = [](const Outcome& outcome) {
+    for (const auto& row : outcome.rows) {
+      if (row.explanation.find("this method does not") != std::string::npos) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(speaks_of_paper(crossings(6)));
+  const Conditions chosen{Effort::quick, 1, MethodChoice{"shardlow-s1", {}}};
+  const auto outcome = crossings(6, chosen);
+  EXPECT_FALSE(speaks_of_paper(outcome));
+  int compared = 0;
+  for (const auto& row : outcome.rows) compared += row.verdict == Verdict::agrees;
+  EXPECT_EQ(compared, 10) << "without the contrast, which is the same";
+}
+
+TEST(SoleymaniFigures23, ARepulsionThatAMethodDoesNotRunIsLeftToTheContrast) {
+  const auto& asked = experiment("soleymani-2020-figures-2-3");
+  const auto count = [&](const char* method) {
+    const Conditions chosen{Effort::quick, 1, MethodChoice{method, {}}};
+    std::size_t of_method = 0;
+    for (const auto& part : asked.parts(chosen)) of_method += part.name.ends_with(method);
+    return std::pair(of_method, asked.parts(chosen).size());
+  };
+  EXPECT_EQ(count("averaged-drift"), (std::pair<std::size_t, std::size_t>(4, 10)));
+  EXPECT_EQ(count("peters"), (std::pair<std::size_t, std::size_t>(6, 12)));
+  EXPECT_EQ(count("shardlow-s1"), (std::pair<std::size_t, std::size_t>(6, 6)));
 }
 
 }  // namespace

@@ -85,6 +85,11 @@ json reproduced(const fs::path& folder, unsigned threads, std::uint64_t seed = 1
                          {folder, {Effort::quick, seed}, threads, "driftless reproduce", true});
 }
 
+json reproduced_with(const fs::path& folder, const MethodChoice& method) {
+  return run_experiments({&summing, &other},
+                         {folder, {Effort::quick, 1, method}, 2, "driftless reproduce", true});
+}
+
 class Reproduce : public ::testing::Test {
  protected:
   Reproduce() : folder_("reproduce") {
@@ -117,6 +122,34 @@ TEST_F(Reproduce, SameNumbersForAnyThreads) {
   EXPECT_EQ(wide_threads, 2U);
   EXPECT_EQ(one, two);
   EXPECT_TRUE(was_alone) << "a wide part runs when all narrow ones have ended";
+}
+
+TEST_F(Reproduce, PartsOfAnotherMethodAreRunAndKeptBesideThePapers) {
+  const auto of_paper = reproduced(folder_.path(), 2)["experiments"];
+  EXPECT_FALSE(of_paper[0].contains("method"));
+  for (const MethodChoice& method :
+       {MethodChoice{"groot-warren", {}}, MethodChoice{"groot-warren", {{"lambda", 0.5}}}}) {
+    runs = 0;
+    const auto papers = reproduced_with(folder_.path(), method);
+    EXPECT_EQ(runs, 4);
+    const auto& one = papers["experiments"][0];
+    EXPECT_EQ(one["method"], to_string(method));
+    EXPECT_EQ(one["rows"], of_paper[0]["rows"]) << "these parts do not depend on it";
+    EXPECT_TRUE(one["remarks"][0].get<std::string>().starts_with(to_string(method) + " runs here"));
+    EXPECT_EQ(reproduced_with(folder_.path(), method)["experiments"], papers["experiments"]);
+    EXPECT_EQ(runs, 4);
+    EXPECT_EQ(schema_errors(papers_schema(), papers), std::vector<std::string>());
+    const auto summary = papers_summary(papers);
+    EXPECT_NE(summary.find("| summing, with " + to_string(method) + " | A Fig. 1 |"),
+              std::string::npos)
+        << summary;
+    EXPECT_NE(summary.find("## A Fig. 1: Summing, with " + to_string(method) + "\n"),
+              std::string::npos)
+        << summary;
+  }
+  runs = 0;
+  EXPECT_EQ(reproduced(folder_.path(), 2)["experiments"], of_paper);
+  EXPECT_EQ(runs, 0);
 }
 
 TEST_F(Reproduce, NoCheckpointOutlivesItsPart) {
@@ -158,6 +191,24 @@ TEST(Papers, KeepTheExperimentsOfAnEarlierReportThatAreNotRunAgain) {
   EXPECT_EQ(both,
             json({record(all[0], "second"), record(all[1], "first"), record(all[2], "second")}));
   EXPECT_EQ(united(std::nullopt, later), later);
+}
+
+TEST(Papers, KeepAnExperimentUnderSeveralMethods) {
+  const auto record = [](const Experiment* experiment, const char* method, const char* command) {
+    json one = {{"name", experiment->name}, {"command", command}};
+    if (*method != 0) one["method"] = method;
+    return one;
+  };
+  const auto* const first = experiments()[0];
+  const auto* const second = experiments()[1];
+  const json earlier = {{"experiments",
+                         {record(first, "peters", "old"), record(first, "", "old"),
+                          record(second, "shardlow-s1", "old")}}};
+  const json later = {
+      {"experiments", {record(first, "peters", "new"), record(first, "groot-warren", "new")}}};
+  EXPECT_EQ(united(earlier, later)["experiments"],
+            json({record(first, "", "old"), record(first, "groot-warren", "new"),
+                  record(first, "peters", "new"), record(second, "shardlow-s1", "old")}));
 }
 
 TEST_F(Reproduce, WritesAReportThatCanBeReadAgain) {
@@ -231,6 +282,68 @@ TEST(ReproduceList, NamesAreFoundAndMistakesCorrected) {
   }
 }
 
+std::string refusal_of(const MethodChoice& method, const std::vector<std::string>& names) {
+  try {
+    std::vector<std::string> left_out;
+    experiments_run_by(method, names, left_out);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ReproduceMethod, WhatItCannotRunIsRefusedWithTheReasonOrLeftOutOfAll) {
+  EXPECT_EQ(refusal_of({"espanol", {}}, {"mackie-1999-walls"}),
+            "--method: espanol cannot run mackie-1999-walls: espanol is built for the friction "
+            "closure noise, this scene has the closure friction");
+  EXPECT_NE(refusal_of({"isoenergetic-verlet", {}}, {"all", "marsh-coveney-1998-species"})
+                .find("isothermal"),
+            std::string::npos)
+      << "one that is named is not left out";
+  EXPECT_NE(refusal_of({"peters", {}}, {"methods-transport"}).find("without --method"),
+            std::string::npos);
+  EXPECT_EQ(refusal_of({"peters", {}}, {"mackie-1999-walls"}), "");
+
+  std::vector<std::string> left_out;
+  const auto suited = experiments_run_by({"isoenergetic-verlet", {}}, {"all"}, left_out);
+  EXPECT_FALSE(suited.empty());
+  EXPECT_EQ(suited.size() + left_out.size(), experiments().size());
+  for (const auto* one : suited) {
+    EXPECT_TRUE(one->name.starts_with("soleymani") || one->name == "marsh-coveney-1998-entropy")
+        << one->name;
+  }
+}
+
+TEST(ReproduceMethod, EachMethodIsRunOnceAndTheChosenOneFirst) {
+  const MethodChoice published{"isoenergetic-verlet", {}}, contrast{"shardlow-s1", {}};
+  const auto names = [&](const std::optional<MethodChoice>& method) {
+    std::vector<std::string> all;
+    const Conditions conditions{Effort::quick, 1, method};
+    for (const auto& one : conditions.methods_or(published, {contrast})) {
+      all.push_back(to_string(one));
+    }
+    return all;
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names({}), (Names{"isoenergetic-verlet", "shardlow-s1"}));
+  EXPECT_EQ(names(MethodChoice{"peters", {}}), (Names{"peters", "shardlow-s1"}));
+  EXPECT_EQ(names(contrast), Names{"shardlow-s1"});
+  const MethodChoice same_again{"shardlow-s1", {{"as_published", false}}};
+  EXPECT_EQ(names(same_again), Names{"shardlow-s1:as_published=false"});
+  const MethodChoice different{"shardlow-s1", {{"as_published", true}}};
+  EXPECT_EQ(names(different), (Names{"shardlow-s1:as_published=true", "shardlow-s1"}));
+}
+
+/// Part names of an experiment under its paper's method and under others, each once.
+void expect_sound_parts(const Experiment& experiment, const Conditions& conditions) {
+  std::set<std::string> names;
+  for (const auto& part : experiment.parts(conditions)) {
+    EXPECT_TRUE(names.insert(part.name).second) << experiment.name << ": " << part.name;
+    EXPECT_GT(part.cost, 0) << experiment.name << ": " << part.name;
+  }
+  EXPECT_FALSE(names.empty()) << experiment.name;
+}
+
 TEST(ReproduceList, EveryExperimentIsFitForAReport) {
   std::set<std::string_view> names;
   for (const auto* experiment : experiments()) {
@@ -239,12 +352,12 @@ TEST(ReproduceList, EveryExperimentIsFitForAReport) {
               std::string_view::npos)
         << experiment->name;
     for (const auto effort : {Effort::quick, Effort::full}) {
-      std::set<std::string> parts;
-      for (const auto& part : experiment->parts({effort, 1})) {
-        EXPECT_TRUE(parts.insert(part.name).second) << experiment->name << ": " << part.name;
-        EXPECT_GT(part.cost, 0) << experiment->name << ": " << part.name;
+      expect_sound_parts(*experiment, {effort, 1});
+      for (const auto* method : methods()) {
+        const MethodChoice choice{std::string(method->name), {}};
+        if (experiment->unsuited && experiment->unsuited(choice)) continue;
+        expect_sound_parts(*experiment, {effort, 1, choice});
       }
-      EXPECT_FALSE(parts.empty()) << experiment->name;
     }
   }
 }

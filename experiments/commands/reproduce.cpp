@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "experiments/commands/commands.hpp"
+#include "experiments/judge/judge.hpp"
 #include "experiments/reproduce/papers.hpp"
 #include "experiments/reproduce/reproduce.hpp"
 #include "experiments/study.hpp"
@@ -14,7 +16,7 @@ using nlohmann::json;
 
 struct Arguments {
   std::vector<std::string> experiments;
-  std::string directory = "reproduction";
+  std::string method, directory = "reproduction";
   std::uint64_t seed = 1;
   unsigned threads = 0;
   bool list = false, quick = false, quiet = false;
@@ -26,6 +28,16 @@ void list_experiments() {
   }
 }
 
+/// What is run, after what a method leaves out.
+std::vector<const reproduce::Experiment*> read_experiments(
+    const Arguments& arguments, const std::optional<MethodChoice>& method) {
+  if (!method) return reproduce::read_experiments(arguments.experiments);
+  std::vector<std::string> left_out;
+  auto experiments = reproduce::experiments_run_by(*method, arguments.experiments, left_out);
+  for (const auto& sentence : left_out) fmt::print(stderr, "left out: {}\n", sentence);
+  return experiments;
+}
+
 /// The exit code.
 int run(const Arguments& arguments) {
   if (arguments.list) {
@@ -35,16 +47,21 @@ int run(const Arguments& arguments) {
   if (arguments.experiments.empty()) {
     throw InputError("reproduce: names of experiments are missing, or `all`; --list names them");
   }
-  const auto experiments = reproduce::read_experiments(arguments.experiments);
-  std::string command =
-      fmt::format("driftless reproduce {} --seed {} -o {}", fmt::join(arguments.experiments, " "),
-                  arguments.seed, arguments.directory);
+  std::optional<MethodChoice> method;
+  if (!arguments.method.empty()) method = judge::read_method_option(arguments.method);
+  const auto experiments = read_experiments(arguments, method);
+  std::string command = program_with_methods();
+  command += fmt::format(" reproduce {} --seed {} -o {}", fmt::join(arguments.experiments, " "),
+                         arguments.seed, arguments.directory);
+  if (method) command += " --method " + arguments.method;
   if (arguments.quick) command += " --quick";
   const auto effort = arguments.quick ? reproduce::Effort::quick : reproduce::Effort::full;
   const auto earlier = reproduce::read_papers(arguments.directory);
-  const auto papers = reproduce::run_experiments(
-      experiments,
-      {arguments.directory, {effort, arguments.seed}, arguments.threads, command, arguments.quiet});
+  const auto papers = reproduce::run_experiments(experiments, {arguments.directory,
+                                                               {effort, arguments.seed, method},
+                                                               arguments.threads,
+                                                               command,
+                                                               arguments.quiet});
   const auto all = reproduce::united(earlier, papers);
   print_written(reproduce::papers_summary(all), reproduce::write_papers(all, arguments.directory));
   const auto& shown = all["experiments"];
@@ -62,6 +79,10 @@ void add_reproduce(CLI::App& app, int& exit_code) {
   command->add_option("experiment", arguments->experiments, "names of experiments, or all")
       ->delimiter(',');
   command->add_flag("--list", arguments->list, "name all experiments and end");
+  command->add_option(
+      "--method", arguments->method,
+      "NAME or NAME:option=value,option=value: this method in the place of the papers' own; `all` "
+      "then leaves out what it cannot run, and methods-transport, which measures every method");
   command->add_flag("--quick", arguments->quick,
                     "smaller systems or shorter runs than the papers'");
   command->add_option("-o,--output", arguments->directory,

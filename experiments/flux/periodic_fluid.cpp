@@ -40,9 +40,9 @@ System equilibrium_start(const PeriodicFluid& setting, std::uint64_t replica) {
 
 Run::Run(const PeriodicFluid& setting, std::uint64_t replica)
     : system_(equilibrium_start(setting, replica)), step_size_(setting.step) {
-  const Method* method = find_method(setting.method);
-  if (method == nullptr) throw std::invalid_argument("there is no method " + setting.method);
-  method_ = method->make({});
+  const Method* method = find_method(setting.method.name);
+  if (method == nullptr) throw std::invalid_argument("there is no method " + setting.method.name);
+  method_ = method->make(setting.method.options);
 }
 
 void Run::step() {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "experiments/statistics.hpp"
-#include "integrators/integrator.hpp"
+#include "experiments/study.hpp"
 #include "model/system.hpp"
 
 namespace driftless::flux {
@@ -16,7 +16,7 @@ struct PeriodicFluid {
   double density = 3;
   double temperature = 1;  ///< at which it starts; its friction may be quoted at another one
   Vector lengths = Vector::Constant(5);
-  std::string method = "isoenergetic-verlet";
+  MethodChoice method = {"isoenergetic-verlet", {}};
   double step = 0.01;  ///< of time
   std::uint64_t seed = 1;
 

@@ -44,6 +44,15 @@ std::vector<Candidate> read_candidates(const std::vector<std::string>& texts) {
   return candidates;
 }
 
+MethodChoice read_method_option(const std::string& text) {
+  const auto candidates = read_candidates({text});
+  if (candidates.size() != 1) {
+    Location("command line", "--method")
+        .refuse("is " + describe(json(text)) + "; allowed is one method");
+  }
+  return candidates.front().choice;
+}
+
 std::vector<const Examination*> read_examinations(const std::vector<std::string>& names) {
   if (names.empty()) return examinations();
   std::vector<std::string> known;

@@ -1,6 +1,6 @@
 #include "experiments/judge/examinations.hpp"
 
-#include <fmt/format.h>
+#include "experiments/study_parts.hpp"
 
 namespace driftless::judge {
 
@@ -13,21 +13,6 @@ const std::vector<const Examination*>& examinations() {
 
 std::string to_string(Depth depth) { return depth == Depth::quick ? "quick" : "full"; }
 
-std::string Candidate::name() const {
-  std::string text = choice.name;
-  const char* separator = ":";
-  for (const auto& [option, value] : choice.options) {
-    text += separator + option + "=";
-    text += std::visit(
-        [](const auto& given) {
-          using Value = std::decay_t<decltype(given)>;
-          if constexpr (std::is_same_v<Value, double>) return fmt::format("{:g}", given);
-          return fmt::format("{}", given);
-        },
-        value);
-    separator = ",";
-  }
-  return text;
-}
+std::string Candidate::name() const { return driftless::to_string(choice); }
 
 }  // namespace driftless::judge

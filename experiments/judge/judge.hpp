@@ -24,6 +24,9 @@ struct JudgeOptions {
 /// for every method with its default options. Throws InputError.
 std::vector<Candidate> read_candidates(const std::vector<std::string>& texts);
 
+/// The one method of an option --method. Throws InputError.
+MethodChoice read_method_option(const std::string& text);
+
 /// The examinations of these names, all if there is none. Throws InputError.
 std::vector<const Examination*> read_examinations(const std::vector<std::string>& names);
 

@@ -63,6 +63,7 @@ struct Plan {
 Plan plan_of(double range, double width, double wavelength, const Conditions& conditions) {
   const auto box = transport::fluid_box(wavelength, width, 1);
   Plan plan{{fluid_of(range), box}, {}};
+  plan.run.method = conditions.method_or(plan.run.method);
   plan.run.seed = conditions.seed;
   plan.run.replicas = 10;
   auto& schedule = plan.schedule;
@@ -264,10 +265,11 @@ Outcome conclude(const Conditions& conditions, const Records& records) {
                               {}});
   outcome.remarks.insert(
       outcome.remarks.begin(),
-      "rho* = T* = 1, no conduction (it does not change the viscosity), B = 0.01, method "
-      "metropolized-splitting at a step of 0.1 and at most a fifth of the collision time: ours. Z "
-      "= rho*^2 r*^5 is "
-      "ours too. The viscosity is rho m/(k^2 int C dt) of the imposed velocity wave C.");
+      fmt::format("rho* = T* = 1, no conduction (it does not change the viscosity), B = 0.01, "
+                  "method {} at a step of 0.1 and at most a fifth of the collision time: ours. Z "
+                  "= rho*^2 r*^5 is ours too. The viscosity is rho m/(k^2 int C dt) of the imposed "
+                  "velocity wave C.",
+                  to_string(conditions.method_or(transport::IdealRun().method))));
   return outcome;
 }
 
@@ -285,6 +287,9 @@ const Experiment avalos_mackie_1999_viscosity = {
         "what is the limit of long waves? Beside them the mean field at each wavelength, which "
         "tends to 2 pi rho^2 zeta_0 r^5/1575 + rho k T/(2 w_0).",
     .parts = parts,
-    .conclude = conclude};
+    .conclude = conclude,
+    .unsuited = [](const MethodChoice& method) {
+      return first_refusal(method, {fluid_of(am99::many)});
+    }};
 
 }  // namespace driftless::reproduce

@@ -121,6 +121,7 @@ constexpr unsigned impositions = 2;
 
 json measure(const Cell& cell, const Conditions& conditions) {
   transport::IdealRun run{cell.fluid(), cell.box()};
+  run.method = conditions.method_or(run.method);
   run.seed = conditions.seed;
   run.replicas = replicas(cell.what, conditions.effort);
   transport::WaveSchedule schedule;
@@ -207,12 +208,21 @@ Outcome conclude(const Conditions& conditions, const Records& records) {
     outcome.pictures.push_back(picture(what, conditions, records));
   }
   outcome.remarks = {
-      "Closure `friction` and heat form `temperature`, in which the law multiplies zeta_0 or "
-      "lambda_0; B = 0.002, 100 neighbours, metropolized-splitting at a step of at most 0.05 and a "
-      "tenth of the fastest relaxation.",
+      fmt::format("Closure `friction` and heat form `temperature`, in which the law multiplies "
+                  "zeta_0 or lambda_0; B = 0.002, 100 neighbours, {} at a step of at most 0.05 and "
+                  "a tenth of the fastest relaxation.",
+                  to_string(conditions.method_or(transport::IdealRun().method))),
       "exp(2/T* - 2) is written as any function of both temperatures and differentiated "
       "automatically; the noise-induced drift follows from the derivatives."};
   return outcome;
+}
+
+std::optional<std::string> unsuited(const MethodChoice& method) {
+  std::vector<FluidParameters> fluids;
+  for (const auto what : both) {
+    for (const auto& cell : cells(what, Effort::quick)) fluids.push_back(cell.fluid());
+  }
+  return first_refusal(method, fluids);
 }
 
 }  // namespace
@@ -228,6 +238,7 @@ const Experiment coefficient_laws = {
         "with a law and with the constant coefficient that the law gives there; the laws are the "
         "square of the temperature and the exponential of an activated liquid.",
     .parts = parts,
-    .conclude = conclude};
+    .conclude = conclude,
+    .unsuited = unsuited};
 
 }  // namespace driftless::reproduce

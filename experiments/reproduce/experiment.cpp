@@ -75,6 +75,26 @@ json list(const std::vector<Element>& elements) {
 
 }  // namespace
 
+std::vector<MethodChoice> Conditions::methods_or(const MethodChoice& published,
+                                                 const std::vector<MethodChoice>& contrasts) const {
+  std::vector<MethodChoice> all = {method_or(published)};
+  for (const auto& contrast : contrasts) {
+    const auto is_contrast = [&](const MethodChoice& one) { return same(one, contrast); };
+    if (std::none_of(all.begin(), all.end(), is_contrast)) all.push_back(contrast);
+  }
+  return all;
+}
+
+std::optional<std::string> first_refusal(const MethodChoice& choice,
+                                         const std::vector<FluidParameters>& fluids) {
+  for (const auto& fluid : fluids) {
+    if (auto reason = refusal(*find_method(choice.name), Fluid(fluid), choice.options)) {
+      return reason;
+    }
+  }
+  return std::nullopt;
+}
+
 std::string to_string(Effort effort) { return effort == Effort::quick ? "quick" : "full"; }
 
 std::string to_string(Verdict verdict) {

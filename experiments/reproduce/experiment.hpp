@@ -12,6 +12,7 @@
 #include "experiments/judge/conclusion.hpp"
 #include "experiments/kept_parts.hpp"
 #include "experiments/statistics.hpp"
+#include "experiments/study_parts.hpp"
 
 /// The systems, measurements and figures of the papers, each with the paper's values beside ours.
 namespace driftless::reproduce {
@@ -26,6 +27,13 @@ std::string to_string(Effort effort);
 struct Conditions {
   Effort effort = Effort::quick;
   std::uint64_t seed = 1;
+  std::optional<MethodChoice> method = {};  ///< in the place of the paper's
+
+  /// The method of the runs that are the paper's under `published`, or ours where it names none.
+  MethodChoice method_or(const MethodChoice& published) const { return method.value_or(published); }
+  /// That one and behind it the contrasts, each method once.
+  std::vector<MethodChoice> methods_or(const MethodChoice& published,
+                                       const std::vector<MethodChoice>& contrasts) const;
 };
 
 using Workplace = PartPlace;
@@ -117,7 +125,14 @@ struct Experiment {
   std::string_view question;  ///< what is simulated and measured, with every setting; a paragraph
   std::vector<Part> (*parts)(const Conditions&);
   Outcome (*conclude)(const Conditions&, const Records&);
+  /// Why a method cannot run it in the place of the paper's, in one sentence without a stop;
+  /// nothing if it can. Null: every method can.
+  std::optional<std::string> (*unsuited)(const MethodChoice&) = nullptr;
 };
+
+/// Why a method cannot run one of the fluids, nothing if it runs them all.
+std::optional<std::string> first_refusal(const MethodChoice& choice,
+                                         const std::vector<FluidParameters>& fluids);
 
 /// Every experiment, in the order of the report.
 const std::vector<const Experiment*>& experiments();

@@ -38,4 +38,23 @@ std::vector<const Experiment*> read_experiments(const std::vector<std::string>& 
   return chosen;
 }
 
+std::vector<const Experiment*> experiments_run_by(const MethodChoice& method,
+                                                  const std::vector<std::string>& names,
+                                                  std::vector<std::string>& left_out) {
+  std::vector<const Experiment*> runs;
+  for (const auto* one : read_experiments(names)) {
+    const auto reason = one->unsuited ? one->unsuited(method) : std::nullopt;
+    if (!reason) {
+      runs.push_back(one);
+      continue;
+    }
+    const std::string sentence =
+        "--method: " + to_string(method) + " cannot run " + std::string(one->name) + ": " + *reason;
+    if (std::find(names.begin(), names.end(), one->name) != names.end()) throw InputError(sentence);
+    left_out.push_back(sentence);
+  }
+  if (runs.empty()) throw InputError("--method: " + to_string(method) + " runs no experiment");
+  return runs;
+}
+
 }  // namespace driftless::reproduce

@@ -27,18 +27,18 @@ struct Run {
 
   std::string name() const {
     const auto weaker = contact == 1 ? "" : fmt::format(", conduction {:g}", contact);
-    return fmt::format("{}, walls on {} faces{}", method.name, 2 * walled_axes, weaker);
+    return fmt::format("{}, walls on {} faces{}", to_string(method), 2 * walled_axes, weaker);
   }
   std::string part(unsigned replica) const { return fmt::format("{}, run {}", name(), replica); }
 };
 
-std::vector<Run> runs_of(Effort effort) {
-  const unsigned replicas = effort == Effort::full ? 8 : 2;
-  const MethodChoice published{"avalos-mackie-explicit", {{"own_products", true}}};
-  return {{published, 3, replicas},
-          {published, 1, 2},
-          {published, 3, 2, 0.1},
-          {{"shardlow-s1", {}}, 3, 2}};
+/// Three kinds of walls under the paper's method, then the first of them under others.
+std::vector<Run> runs_of(const Conditions& conditions) {
+  const unsigned replicas = conditions.effort == Effort::full ? 8 : 2;
+  const auto methods = conditions.methods_or(mackie_explicit, {{"shardlow-s1", {}}});
+  std::vector<Run> runs = {{methods[0], 3, replicas}, {methods[0], 1, 2}, {methods[0], 3, 2, 0.1}};
+  for (std::size_t n = 1; n < methods.size(); ++n) runs.push_back({methods[n], 3, 2});
+  return runs;
 }
 
 json run(const Run& run, std::uint64_t seed, unsigned replica, const Workplace& workplace) {
@@ -61,7 +61,7 @@ json run(const Run& run, std::uint64_t seed, unsigned replica, const Workplace& 
 
 std::vector<Part> parts(const Conditions& conditions) {
   std::vector<Part> all;
-  for (const auto& asked : runs_of(conditions.effort)) {
+  for (const auto& asked : runs_of(conditions)) {
     for (unsigned replica = 0; replica < asked.replicas; ++replica) {
       all.push_back({asked.part(replica), 3.2e-7 * particles * duration / time_step, false,
                      [asked, replica, seed = conditions.seed](const Workplace& workplace) {
@@ -242,7 +242,7 @@ Picture cooling(const std::vector<Run>& runs, const Records& records) {
 
 Outcome conclude(const Conditions& conditions, const Records& records) {
   Outcome outcome;
-  const auto runs = runs_of(conditions.effort);
+  const auto runs = runs_of(conditions);
   for (const auto& run : runs) add_rows(outcome, run, {run, records});
   outcome.pictures = {whole_course(runs, records), cooling(runs, records)};
   outcome.remarks = {
@@ -270,6 +270,7 @@ const Experiment mackie_1999_figure_3{
         "from the walls then warms the fluid to 1.1 at t* about 100. Least temperatures, their "
         "times, the time constant of the warming, and both temperatures over time.",
     .parts = parts,
-    .conclude = conclude};
+    .conclude = conclude,
+    .unsuited = liquid_unsuited};
 
 }  // namespace driftless::reproduce

@@ -47,6 +47,10 @@ double pushed(const Surroundings& surroundings) {
 
 }  // namespace
 
+std::optional<std::string> liquid_unsuited(const MethodChoice& method) {
+  return first_refusal(method, {mackie_parameters(mackie_liquid)});
+}
+
 WallLayer wall_layer(const WallRepulsion& repulsion, double boltzmann, double temperature) {
   const double thermal = boltzmann * temperature;
   const double height = 0.5 * repulsion.strength * repulsion.range / thermal;  // psi(0)/kT

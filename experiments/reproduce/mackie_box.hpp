@@ -13,6 +13,12 @@
 /// The boxes of [MAN], Mackie, Bonet Avalos, Navas, PCCP 1, 2039 (1999), in its own units.
 namespace driftless::reproduce {
 
+/// The paper's explicit scheme, with the coefficients of its 2.32 put right.
+inline const MethodChoice mackie_explicit{"avalos-mackie-explicit", {{"own_products", true}}};
+
+/// Why a method cannot run the fluid of the equilibrium runs, nothing if it can.
+std::optional<std::string> liquid_unsuited(const MethodChoice& method);
+
 /// What an ideal gas of boltzmann k and a temperature makes of a wall.
 struct WallLayer {
   double excluded;   ///< int (1 - exp(-psi/kT)) dx: by how much the wall shortens the box

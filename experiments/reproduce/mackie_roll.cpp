@@ -95,7 +95,7 @@ json run_roll(const RollRun& run, std::uint64_t seed, const Workplace& workplace
            {"fields", &fields, steps(sample_every), steps(run.settle)}},
           workplace,
           {{"seed", seed},
-           {"method", run.method.name},
+           {"method", to_string(run.method)},
            {"particles", run.particles},
            {"gravity", run.gravity},
            {"start", run.start},

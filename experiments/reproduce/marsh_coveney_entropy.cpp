@@ -4,27 +4,33 @@
 namespace driftless::reproduce {
 namespace {
 
-/// The papers' own integrators.
-const std::vector<judge::Candidate>& candidates() {
-  static const std::vector<judge::Candidate> all = {{{"marsh-coveney", {}}},
-                                                    {{"avalos-mackie-explicit", {}}}};
-  return all;
+/// The papers' own integrators, or the one in their place.
+std::vector<judge::Candidate> candidates(const Conditions& conditions) {
+  if (conditions.method) return {{*conditions.method}};
+  return {{{"marsh-coveney", {}}}, {{"avalos-mackie-explicit", {}}}};
+}
+
+bool is_of_one_species(const judge::PairCase& asked) { return asked.bench.fluid.species() == 1; }
+
+/// The model that a method is not built for is left out, as the isothermal one is of most.
+std::optional<std::string> unsuited(const MethodChoice& method) {
+  if (!judge::pair_cases({method}).empty()) return std::nullopt;
+  return method.name + " is built for neither isothermal pairs nor pairs that keep the energy";
 }
 
 std::vector<Part> parts(const Conditions& conditions) {
   std::vector<Part> all;
-  const auto of_one_species = [](const judge::PairCase& asked) {
-    return asked.bench.fluid.species() == 1;
-  };
-  for (const auto& candidate : candidates()) {
-    add_entropy_parts(candidate, of_one_species, conditions, all);
+  for (const auto& candidate : candidates(conditions)) {
+    add_entropy_parts(candidate, is_of_one_species, conditions, all);
   }
   return all;
 }
 
-Outcome conclude(const Conditions&, const Records& records) {
+Outcome conclude(const Conditions& conditions, const Records& records) {
   Outcome outcome;
-  for (const auto& candidate : candidates()) conclude_entropy(candidate, records, outcome);
+  for (const auto& candidate : candidates(conditions)) {
+    conclude_entropy(candidate, records, outcome);
+  }
   outcome.remarks = {
       "The functionals are those of the exact process: at a finite step a method has a stationary "
       "law of its own, and what must be monotone is the distance from that one. A fall of S[P] "
@@ -52,6 +58,7 @@ const Experiment marsh_coveney_entropy{
         "change the wrong way between any two times is given; it counts as one where chance alone "
         "would bring it about, among all pairs of times, less than once in a million times.",
     .parts = parts,
-    .conclude = conclude};
+    .conclude = conclude,
+    .unsuited = unsuited};
 
 }  // namespace driftless::reproduce

@@ -17,9 +17,10 @@ constexpr std::size_t species_count = 3;
 constexpr double settle = 10;  ///< before averages, longer than velocities take to forget
 constexpr double resolution = 0.02;
 
-const judge::Candidate& candidate() {
-  static const judge::Candidate one = {{"marsh-coveney", {}}};
-  return one;
+const MethodChoice published{"marsh-coveney", {}};
+
+judge::Candidate candidate(const Conditions& conditions) {
+  return {conditions.method_or(published)};
 }
 
 /// Each half of the one before, as the extrapolation has the last two.
@@ -91,8 +92,8 @@ json run(Kind kind, double step, unsigned replica, const Conditions& conditions)
   const auto count = static_cast<std::uint64_t>(std::llround(size.duration / step));
   Temperatures sums{};
   double samples = 0;
-  const auto failure = judge::run_isolated(candidate(), prepared, replica, Vector::Zero(), step,
-                                           count, stride, [&](System& system, double time) {
+  const auto failure = judge::run_isolated(candidate(conditions), prepared, replica, Vector::Zero(),
+                                           step, count, stride, [&](System& system, double time) {
                                              if (time < settle) return;
                                              const auto found = temperatures(system);
                                              for (std::size_t n = 0; n < sums.size(); ++n)
@@ -127,8 +128,9 @@ std::vector<Part> parts(const Conditions& conditions) {
     }
   }
   add_entropy_parts(
-      candidate(), [](const judge::PairCase& asked) { return asked.bench.fluid.species() > 1; },
-      conditions, all);
+      candidate(conditions),
+      [](const judge::PairCase& asked) { return asked.bench.fluid.species() > 1; }, conditions,
+      all);
   return all;
 }
 
@@ -182,29 +184,35 @@ Interval at_vanishing_steps(const std::vector<Interval>& values) {
   return {value, value - margin, value + margin};
 }
 
-Row row_of(Kind kind, const std::string& quantity, const std::string& setting,
-           const Interval& ours) {
+Row row_of(const judge::Candidate& candidate, Kind kind, const std::string& quantity,
+           const std::string& setting, const Interval& ours) {
   Row row;
   row.quantity = quantity;
-  row.setting = fmt::format("marsh-coveney, {}, {}", name_of(kind), setting);
+  row.setting = fmt::format("{}, {}, {}", candidate.name(), name_of(kind), setting);
   row.unit = "1";
   row.ours = ours;
   return row;
 }
 
 /// The paper speaks of the model, that is of vanishing steps.
-Row limit_row(Kind kind, const std::string& quantity, const Interval& ours) {
-  Row row = row_of(kind, quantity, "at vanishing steps", ours);
+Row limit_row(const judge::Candidate& candidate, Kind kind, const std::string& quantity,
+              const Interval& ours) {
+  Row row = row_of(candidate, kind, quantity, "at vanishing steps", ours);
   row.paper = {1, 1, 1};
   row.paper_text = kind == Kind::isothermal ? "every species has the temperature of the bath"
                                             : "one temperature of all species";
   row.verdict = compare(ours, *row.paper, resolution);
   row.explanation = "Extrapolated in a straight line from the two smaller steps.";
+  const Fluid fluid(scene_of(kind, 1).fluid);
+  if (!is_consistent(candidate.method(), candidate.choice.options, fluid)) {
+    row.explanation += " By the method's own claim its limit is another model.";
+  }
   return row;
 }
 
 void conclude_fluid(Kind kind, const Conditions& conditions, const Records& records,
                     Outcome& outcome) {
+  const auto method = candidate(conditions);
   judge::Chart chart{"temperatures of the species", {"time step"}, {"over what it should be"}, {}};
   for (const auto& quantity : quantities(kind)) {
     judge::Series series{quantity.name, {}};
@@ -212,14 +220,16 @@ void conclude_fluid(Kind kind, const Conditions& conditions, const Records& reco
     for (const double step : steps()) {
       values.push_back(measured(conditions, records, kind, step, quantity));
       const auto& ours = values.back();
-      Row row = row_of(kind, quantity.name, fmt::format("step {:g}", step), ours);
-      row.explanation = "The explicit step is wrong in proportion to it.";
+      Row row = row_of(method, kind, quantity.name, fmt::format("step {:g}", step), ours);
+      if (same(method.choice, published)) {
+        row.explanation = "The explicit step is wrong in proportion to it.";
+      }
       outcome.rows.push_back(row);
       if (std::isfinite(ours.value)) {
         series.points.push_back({step, ours.value, ours.low, ours.high});
       }
     }
-    outcome.rows.push_back(limit_row(kind, quantity.name, at_vanishing_steps(values)));
+    outcome.rows.push_back(limit_row(method, kind, quantity.name, at_vanishing_steps(values)));
     chart.series.push_back(std::move(series));
   }
   const judge::Point from{0, 1, {}, {}}, to{steps().front(), 1, {}, {}};
@@ -234,7 +244,7 @@ void conclude_fluid(Kind kind, const Conditions& conditions, const Records& reco
 Outcome conclude(const Conditions& conditions, const Records& records) {
   Outcome outcome;
   for (const Kind kind : kinds) conclude_fluid(kind, conditions, records, outcome);
-  conclude_entropy(candidate(), records, outcome);
+  conclude_entropy(candidate(conditions), records, outcome);
   const Size size = size_of(conditions.effort);
   outcome.remarks = {
       fmt::format("Masses 1, 4 and 0.5, heat capacities 60, 100 and 30 k; friction 4.5 (pairs 0, "
@@ -246,6 +256,12 @@ Outcome conclude(const Conditions& conditions, const Records& records) {
       "statement is that fluctuation and dissipation in balance for every pair of species lead "
       "all of them to one temperature, and that F[P] falls."};
   return outcome;
+}
+
+std::optional<std::string> unsuited(const MethodChoice& method) {
+  std::vector<FluidParameters> fluids;
+  for (const Kind kind : kinds) fluids.push_back(scene_of(kind, 1).fluid);
+  return first_refusal(method, fluids);
 }
 
 }  // namespace
@@ -264,6 +280,7 @@ const Experiment marsh_coveney_species{
         "<H> + k T <ln P> of isothermal pairs of two species (mass ratio 4), which start in a "
         "narrow cloud far from equilibrium, may only fall.",
     .parts = parts,
-    .conclude = conclude};
+    .conclude = conclude,
+    .unsuited = unsuited};
 
 }  // namespace driftless::reproduce

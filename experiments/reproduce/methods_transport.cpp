@@ -290,6 +290,10 @@ const Experiment methods_transport = {
         "conductivity and sound speed from the decay of imposed waves. Every value stands beside "
         "the limit of small steps, pooled over the consistent methods.",
     .parts = parts,
-    .conclude = conclude};
+    .conclude = conclude,
+    .unsuited = [](const MethodChoice&) {
+      return std::optional<std::string>(
+          "it measures every method already; allowed is to run it without --method");
+    }};
 
 }  // namespace driftless::reproduce

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "experiments/files.hpp"
 #include "experiments/json_text.hpp"
-#include "experiments/named_list.hpp"
 #include "experiments/page.hpp"
 #include "experiments/study.hpp"
 #include "experiments/text_file.hpp"
@@ -59,6 +59,11 @@ bool has_theory(const json& rows) {
                      [](const json& row) { return row.contains("theory"); });
 }
 
+/// "mackie-1999-walls", "mackie-1999-walls, with peters".
+std::string with_method(const json& experiment, std::string text) {
+  return experiment.contains("method") ? text + ", with " + text_of(experiment, "method") : text;
+}
+
 std::string overview(const json& papers) {
   std::string head = "| experiment | source |", rule = "| --- | --- |";
   for (const auto verdict : verdicts) {
@@ -67,7 +72,8 @@ std::string overview(const json& papers) {
   }
   std::string text = head + "\n" + rule + "\n";
   for (const auto& experiment : papers["experiments"]) {
-    text += fmt::format("| {} | {} |", text_of(experiment, "name"), text_of(experiment, "source"));
+    text += fmt::format("| {} | {} |", with_method(experiment, text_of(experiment, "name")),
+                        text_of(experiment, "source"));
     for (const auto verdict : verdicts) {
       std::size_t count = 0;
       for (const auto& row : experiment["rows"]) count += row["verdict"] == to_string(verdict);
@@ -104,8 +110,22 @@ std::string rows_of(const json& experiment) {
 
 json united(const std::optional<json>& earlier, json papers) {
   if (!earlier) return papers;
-  papers["experiments"] =
-      united_by_name(experiments(), papers["experiments"], (*earlier)["experiments"]);
+  // By experiment and method; the paper's own method, which has no name here, comes first.
+  std::map<std::pair<std::string, std::string>, json> found;
+  const auto take = [&](const json& report) {
+    for (const auto& one : report["experiments"]) {
+      found[{text_of(one, "name"), text_of(one, "method")}] = one;
+    }
+  };
+  take(*earlier);
+  take(papers);
+  json all = json::array();
+  for (const auto* experiment : experiments()) {
+    for (const auto& [key, record] : found) {
+      if (key.first == experiment->name) all.push_back(record);
+    }
+  }
+  papers["experiments"] = std::move(all);
   return papers;
 }
 
@@ -117,8 +137,9 @@ std::string papers_summary(const json& papers) {
       overview(papers);
   for (const auto& experiment : papers["experiments"]) {
     text += fmt::format("\n## {}: {}\n\n`{}` (commit {})\n\n{}", text_of(experiment, "source"),
-                        text_of(experiment, "title"), text_of(experiment, "command"),
-                        text_of(experiment, "commit"), rows_of(experiment));
+                        with_method(experiment, text_of(experiment, "title")),
+                        text_of(experiment, "command"), text_of(experiment, "commit"),
+                        rows_of(experiment));
   }
   return text;
 }

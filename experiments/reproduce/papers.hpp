@@ -20,7 +20,7 @@ nlohmann::json to_json(const Outcome& outcome);
 std::string papers_summary(const nlohmann::json& papers);
 
 /// A report with the experiments of an earlier one that it does not have itself, in the order of
-/// all experiments.
+/// all experiments. One run under another method is another experiment.
 nlohmann::json united(const std::optional<nlohmann::json>& earlier, nlohmann::json papers);
 
 /// The report of a folder, if that is what the folder (or the file) holds. Throws InputError if it

@@ -35,6 +35,12 @@ std::string commit_text(const json& provenance) {
          (provenance["dirty"].get<bool>() ? "-dirty" : "");
 }
 
+std::string replacement_remark(const MethodChoice& method) {
+  return to_string(method) +
+         " runs here at the same steps in the place of the paper's method, or of ours where the "
+         "paper names none.";
+}
+
 class Reproduction {
  public:
   Reproduction(const std::vector<const Experiment*>& experiments, const ReproduceOptions& options)
@@ -46,6 +52,8 @@ class Reproduction {
   json run();
 
  private:
+  /// An experiment's name, with the method that was chosen for it.
+  std::string titled(const Experiment& experiment) const;
   KeptPart kept(Trial& trial, Part part);
   json record_of(const Trial& trial, const Records& records) const;
 
@@ -55,6 +63,12 @@ class Reproduction {
   std::vector<Trial> trials_;
   std::mutex failing_;
 };
+
+std::string Reproduction::titled(const Experiment& experiment) const {
+  const std::string name(experiment.name);
+  return options_.conditions.method ? name + " with " + to_string(*options_.conditions.method)
+                                    : name;
+}
 
 KeptPart Reproduction::kept(Trial& trial, Part part) {
   trial.parts.push_back(part.name);
@@ -68,9 +82,11 @@ KeptPart Reproduction::kept(Trial& trial, Part part) {
       return nullptr;
     }
   };
-  return {.name = fmt::format("{}, {}", trial.experiment->name, part.name),
-          .identity = {trial.experiment->name, part.name, options_.conditions.seed,
-                       to_string(options_.conditions.effort)},
+  const auto& conditions = options_.conditions;
+  const json method = conditions.method ? driftless::to_json(*conditions.method) : json();
+  return {.name = fmt::format("{}, {}", titled(*trial.experiment), part.name),
+          .identity = {trial.experiment->name, part.name, conditions.seed,
+                       to_string(conditions.effort), method},
           .cost = part.cost,
           .alone = part.wide,
           .run = run};
@@ -85,12 +101,16 @@ json Reproduction::record_of(const Trial& trial, const Records& records) const {
                  {"effort", to_string(options_.conditions.effort)},
                  {"command", options_.command},
                  {"commit", commit_text(provenance_)}};
+  if (options_.conditions.method) record["method"] = to_string(*options_.conditions.method);
   Outcome outcome;
   if (const auto* part = trial.failed_part()) {
     record["failure"] = fmt::format("{}: {}", *part, trial.failures.at(*part));
   } else {
     try {
       outcome = experiment.conclude(options_.conditions, records);
+      if (const auto& method = options_.conditions.method) {
+        outcome.remarks.insert(outcome.remarks.begin(), replacement_remark(*method));
+      }
     } catch (const std::exception& failure) {
       record["failure"] = failure.what();
     }

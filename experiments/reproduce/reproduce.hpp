@@ -21,6 +21,13 @@ struct ReproduceOptions {
 /// naming the nearest one.
 std::vector<const Experiment*> read_experiments(const std::vector<std::string>& names);
 
+/// Those of `read_experiments` that a method runs in the place of the papers' own. One that it
+/// cannot run is left out, with a sentence in `left_out`, if it was asked for by "all" alone; else
+/// that sentence is thrown as InputError, as is one if nothing is left.
+std::vector<const Experiment*> experiments_run_by(const MethodChoice& method,
+                                                  const std::vector<std::string>& names,
+                                                  std::vector<std::string>& left_out);
+
 /// Runs the experiments' parts: narrow ones side by side on all threads, then the wide ones, one
 /// after the other. A finished part is kept in `directory`/parts at once; the same command run
 /// again by the same program takes those up and runs the others. Numbers do not depend on the

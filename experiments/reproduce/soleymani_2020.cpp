@@ -9,6 +9,14 @@ namespace driftless::reproduce::so20 {
 
 using nlohmann::json;
 
+MethodChoice leading_method(const Conditions& conditions) {
+  return conditions.method_or(published);
+}
+
+std::vector<MethodChoice> methods(const Conditions& conditions) {
+  return conditions.methods_or(published, {contrast});
+}
+
 std::string Combination::name() const {
   const std::string heat =
       heat_form == HeatForm::temperature ? "temperature" : "inverse-temperature";
@@ -38,6 +46,12 @@ const std::vector<Combination>& all_combinations() {
   return all;
 }
 
+std::optional<std::string> unsuited(const MethodChoice& method) {
+  std::vector<FluidParameters> fluids;
+  for (const auto& combination : combinations()) fluids.push_back(fluid_of(combination));
+  return first_refusal(method, fluids);
+}
+
 FluidParameters fluid_of(const Combination& combination) {
   return {.boltzmann = 1,
           .mass = 1,
@@ -55,7 +69,7 @@ FluidParameters fluid_of(const Combination& combination) {
           .weight_exponent = 2};
 }
 
-flux::PeriodicFluid box_of(const Combination& combination, const std::string& method,
+flux::PeriodicFluid box_of(const Combination& combination, const MethodChoice& method,
                            const Conditions& conditions) {
   flux::PeriodicFluid fluid;
   fluid.fluid = fluid_of(combination);
@@ -115,9 +129,10 @@ judge::Point point_of(double x, const Interval& interval) {
 
 Interval exactly(double value) { return {value, value, value}; }
 
-std::string setting_of(const std::string& name, const std::string& method,
+std::string setting_of(const std::string& name, const MethodChoice& method,
                        const std::string& more) {
-  return fmt::format("{}; {}, step 0.01{}{}", name, method, more.empty() ? "" : "; ", more);
+  return fmt::format("{}; {}, step 0.01{}{}", name, to_string(method), more.empty() ? "" : "; ",
+                     more);
 }
 
 Row about_row(std::string quantity, std::string setting, std::string words,

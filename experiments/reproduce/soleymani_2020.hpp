@@ -14,8 +14,13 @@
 /// (2020), [So20], share. The paper's parameters are not known to us: these are ours.
 namespace driftless::reproduce::so20 {
 
-inline constexpr const char* published = "isoenergetic-verlet";
-inline constexpr const char* contrast = "shardlow-s1";
+inline const MethodChoice published{"isoenergetic-verlet", {}};
+inline const MethodChoice contrast{"shardlow-s1", {}};
+
+/// The paper's method, or the one in its place.
+MethodChoice leading_method(const Conditions& conditions);
+/// That one and, if it is another, the contrast.
+std::vector<MethodChoice> methods(const Conditions& conditions);
 
 /// Repulsion and heat form, of which the paper combines several.
 struct Combination {
@@ -30,12 +35,16 @@ const std::vector<Combination>& combinations();
 /// does not run it.
 const std::vector<Combination>& all_combinations();
 
+/// Why a method cannot run one of the combinations without a repulsion that follows the
+/// temperature, nothing if it runs them all.
+std::optional<std::string> unsuited(const MethodChoice& method);
+
 /// The fluid of a combination: m = k = r_c = 1, friction 4.5 at T = 1 with the noise closure, heat
 /// capacity 60, conduction 300, weights (1 - r)^2.
 FluidParameters fluid_of(const Combination& combination);
 
 /// That fluid in a box along z, at density 3 and T = 1, with a time step of 0.01.
-flux::PeriodicFluid box_of(const Combination& combination, const std::string& method,
+flux::PeriodicFluid box_of(const Combination& combination, const MethodChoice& method,
                            const Conditions& conditions);
 
 /// Between slabs, long enough for the temperatures to have followed, measured for longer if `full`.
@@ -61,7 +70,7 @@ judge::Point point_of(double x, const Interval& interval);
 Interval exactly(double value);
 
 /// What the setting of a row says of the fluid's run.
-std::string setting_of(const std::string& name, const std::string& method,
+std::string setting_of(const std::string& name, const MethodChoice& method,
                        const std::string& more = "");
 
 /// How the paper's formulas are named where theory stands beside ours: no number of them is known

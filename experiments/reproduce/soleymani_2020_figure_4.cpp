@@ -14,12 +14,12 @@ using nlohmann::json;
 /// One measurement of the conductivity.
 struct Point {
   Combination combination;
-  const char* method;
+  MethodChoice method;
   double temperature = 1, density = 3, heat_flux = 6;
 
   std::string name() const {
-    return fmt::format("{}, {}, T = {:g}, density {:g}, flux {:g}", combination.name(), method,
-                       temperature, density, heat_flux);
+    return fmt::format("{}, {}, T = {:g}, density {:g}, flux {:g}", combination.name(),
+                       to_string(method), temperature, density, heat_flux);
   }
 };
 
@@ -38,22 +38,21 @@ const std::vector<Scan>& scans() {
 }
 
 /// The common point and those of a scan, in rising order.
-std::vector<Point> points_of(const Combination& combination, const Scan& scan) {
-  std::vector<Point> points;
-  Point common{combination, published};
+std::vector<Point> points_of(const Combination& combination, const MethodChoice& method,
+                             const Scan& scan) {
+  Point common{combination, method};
   Point low = common, high = common;
   low.*scan.variable = scan.values[0];
   high.*scan.variable = scan.values[1];
   return {low, common, high};
 }
 
-std::vector<Point> all_points() {
+std::vector<Point> all_points(const Conditions& conditions) {
   std::vector<Point> points;
   for (const auto& combination : combinations()) {
-    points.push_back({combination, published});
-    points.push_back({combination, contrast});
+    for (const auto& method : methods(conditions)) points.push_back({combination, method});
     for (const auto& scan : scans()) {
-      const auto scanned = points_of(combination, scan);
+      const auto scanned = points_of(combination, leading_method(conditions), scan);
       points.push_back(scanned.front());
       points.push_back(scanned.back());
     }
@@ -80,7 +79,7 @@ json measure(const Point& point, const Conditions& conditions) {
 
 std::vector<Part> parts(const Conditions& conditions) {
   std::vector<Part> all;
-  for (const auto& point : all_points()) {
+  for (const auto& point : all_points(conditions)) {
     const auto fluid = fluid_at(point, conditions);
     const auto run = slabs_of(fluid, point.heat_flux, conditions.effort);
     const double duration =
@@ -140,13 +139,13 @@ Row row_of(const Point& point, const json& record) {
   return row;
 }
 
-Picture picture(const Scan& scan, const Records& records) {
+Picture picture(const MethodChoice& method, const Scan& scan, const Records& records) {
   judge::Chart chart{
       std::string("conductivity ") + scan.title, {scan.axis}, {"thermal conductivity"}, {}};
   for (const auto& combination : combinations()) {
     judge::Series measured{combination.name(), {}};
     judge::Series theory{combination.name() + ", analytic", {}, judge::Marks::line};
-    for (const auto& point : points_of(combination, scan)) {
+    for (const auto& point : points_of(combination, method, scan)) {
       const json& record = records.at(point.name());
       if (failed(record)) continue;
       const double x = point.*scan.variable;
@@ -159,7 +158,7 @@ Picture picture(const Scan& scan, const Records& records) {
   return {std::string("So20 Fig. 4: conductivity ") + scan.title,
           fmt::format("{}, from the heat flux over the slope between the slabs; lines: analytic, "
                       "without structure.",
-                      published),
+                      to_string(method)),
           std::move(chart),
           {}};
 }
@@ -170,14 +169,15 @@ bool both_ran(const std::vector<Point>& points, const Records& records) {
 
 /// The conductivity at the end of a scan over that at its start: the shape of the paper's curve,
 /// which our choice of parameters need not spoil.
-Row trend(const Combination& combination, const Scan& scan, const Records& records) {
-  const auto points = points_of(combination, scan);
+Row trend(const Combination& combination, const MethodChoice& method, const Scan& scan,
+          const Records& records) {
+  const auto points = points_of(combination, method, scan);
   const Point &from = points.front(), &to = points.back();
   const json &low = records.at(from.name()), &high = records.at(to.name());
   Row row;
   row.quantity = fmt::format("conductivity at {0} {1:g} / at {0} {2:g}", scan.axis,
                              to.*scan.variable, from.*scan.variable);
-  row.setting = setting_of(combination.name(), published);
+  row.setting = setting_of(combination.name(), method);
   row.unit = "1";
   row.ours =
       ratio(interval_of(high["line"]["conductivity"]), interval_of(low["line"]["conductivity"]));
@@ -195,12 +195,12 @@ Row trend(const Combination& combination, const Scan& scan, const Records& recor
 }
 
 /// The abstract's sentence, for all states of a combination that ran.
-void add_estimate_row(const Combination& combination, const Records& records, Outcome& outcome) {
+void add_estimate_row(const Combination& combination, const Conditions& conditions,
+                      const Records& records, Outcome& outcome) {
+  const auto method = leading_method(conditions);
   std::vector<RatioAt> ratios;
-  for (const auto& point : all_points()) {
-    if (point.combination.name() != combination.name() || point.method != std::string(published)) {
-      continue;
-    }
+  for (const auto& point : all_points(conditions)) {
+    if (point.combination.name() != combination.name() || !same(point.method, method)) continue;
     const json& record = records.at(point.name());
     if (failed(record)) continue;
     ratios.push_back({state_of(point), scaled(interval_of(record["line"]["conductivity"]),
@@ -208,26 +208,29 @@ void add_estimate_row(const Combination& combination, const Records& records, Ou
   }
   if (ratios.empty()) return;
   outcome.rows.push_back(
-      about_row("thermal conductivity / analytic one", setting_of(combination.name(), published),
+      about_row("thermal conductivity / analytic one", setting_of(combination.name(), method),
                 "the analytic approximation allows an estimate a priori", ratios));
 }
 
 Outcome conclude(const Conditions& conditions, const Records& records) {
   Outcome outcome;
   outcome.remarks = common_remarks(conditions);
-  for (const auto& combination : combinations()) add_estimate_row(combination, records, outcome);
+  const auto method = leading_method(conditions);
+  for (const auto& combination : combinations()) {
+    add_estimate_row(combination, conditions, records, outcome);
+  }
   for (const auto& combination : combinations()) {
     for (const auto& scan : scans()) {
-      if (!both_ran(points_of(combination, scan), records)) continue;
-      outcome.rows.push_back(trend(combination, scan, records));
+      if (!both_ran(points_of(combination, method, scan), records)) continue;
+      outcome.rows.push_back(trend(combination, method, scan, records));
     }
   }
-  for (const auto& point : all_points()) {
+  for (const auto& point : all_points(conditions)) {
     if (const auto* record = record_or_remark(records, point.name(), outcome)) {
       outcome.rows.push_back(row_of(point, *record));
     }
   }
-  for (const auto& scan : scans()) outcome.pictures.push_back(picture(scan, records));
+  for (const auto& scan : scans()) outcome.pictures.push_back(picture(method, scan, records));
   outcome.remarks.push_back(
       "No number of the paper's figure is known to us, and its eq. 17-26 without their symbols. "
       "Theory is evaluated here: (2 pi rho^2/3) int lambda r^4 dr + rho phi k T/(m (w_0 + w_q)) + "
@@ -250,6 +253,7 @@ const Experiment soleymani_2020_figure_4{
         "three temperatures, densities and fluxes, for four combinations of repulsion and heat "
         "form, by the paper's scheme; at the common point by shardlow-s1 too.",
     .parts = parts,
-    .conclude = conclude};
+    .conclude = conclude,
+    .unsuited = unsuited};
 
 }  // namespace driftless::reproduce

@@ -15,12 +15,12 @@ constexpr double heat_flux = 6;
 
 struct Point {
   double repulsion, friction;
-  const char* method;
+  MethodChoice method;
   double step() const { return friction > 10 ? 0.005 : 0.01; }
   Combination combination() const { return {repulsion, HeatForm::inverse_temperature}; }
   std::string name() const {
-    return fmt::format("{}, friction {:g}, {}, step {:g}", combination().name(), friction, method,
-                       step());
+    return fmt::format("{}, friction {:g}, {}, step {:g}", combination().name(), friction,
+                       to_string(method), step());
   }
 };
 
@@ -29,11 +29,12 @@ const std::vector<double>& frictions() {
   return all;
 }
 
-std::vector<Point> all_points() {
+std::vector<Point> all_points(const Conditions& conditions) {
+  const auto both = methods(conditions);
   std::vector<Point> points;
   for (const double repulsion : {0.0, 25.0}) {
-    for (const double friction : frictions()) points.push_back({repulsion, friction, published});
-    points.push_back({repulsion, 4.5, contrast});
+    for (const double friction : frictions()) points.push_back({repulsion, friction, both.front()});
+    if (both.size() > 1) points.push_back({repulsion, 4.5, both.back()});
   }
   return points;
 }
@@ -87,7 +88,7 @@ json measure(const Point& point, const Conditions& conditions) {
 
 std::vector<Part> parts(const Conditions& conditions) {
   std::vector<Part> all;
-  for (const auto& point : all_points()) {
+  for (const auto& point : all_points(conditions)) {
     const auto fluid = fluid_at(point, conditions);
     const auto slabs = slabs_of(fluid, heat_flux, conditions.effort);
     // With repulsion every replica comes to equilibrium first.
@@ -173,11 +174,11 @@ void add_rows(const Point& point, const flux::PeriodicFluid& fluid, const json& 
                         "It has the error of the viscosity."));
 }
 
-/// The frictions at which the paper's scheme ran.
-std::vector<Point> ran(double repulsion, const Records& records) {
+/// The frictions at which the paper's scheme, or the one in its place, ran.
+std::vector<Point> ran(double repulsion, const Conditions& conditions, const Records& records) {
   std::vector<Point> points;
   for (const double friction : frictions()) {
-    const Point point{repulsion, friction, published};
+    const Point point{repulsion, friction, leading_method(conditions)};
     if (!failed(records.at(point.name()))) points.push_back(point);
   }
   return points;
@@ -187,14 +188,14 @@ std::vector<Point> ran(double repulsion, const Records& records) {
 /// change from the smallest friction to the largest, the shape of the paper's curves.
 void add_rows_of_all(double repulsion, const Conditions& conditions, const Records& records,
                      Outcome& outcome) {
-  const auto points = ran(repulsion, records);
+  const auto points = ran(repulsion, conditions, records);
   if (points.empty()) return;
   const auto numbers = [&](const Point& point) {
     return Numbers(fluid_at(point, conditions), records.at(point.name()));
   };
-  const std::string setting =
-      fmt::format("{}; {}, frictions {:g} to {:g}", points.front().combination().name(), published,
-                  points.front().friction, points.back().friction);
+  const std::string setting = fmt::format(
+      "{}; {}, frictions {:g} to {:g}", points.front().combination().name(),
+      to_string(points.front().method), points.front().friction, points.back().friction);
   std::vector<RatioAt> ratios;
   for (const auto& point : points) {
     ratios.push_back({fmt::format("friction {:g}", point.friction),
@@ -225,9 +226,10 @@ void add_rows_of_all(double repulsion, const Conditions& conditions, const Recor
 }
 
 Picture correlations(const Records& records, const Conditions& conditions) {
+  const auto method = leading_method(conditions);
   judge::Chart chart{"velocity autocorrelation", {"time"}, {"<v(0) v(t)>/<v^2>"}, {}};
   for (const double repulsion : {0.0, 25.0}) {
-    const Point point{repulsion, 4.5, published};
+    const Point point{repulsion, 4.5, method};
     const json& record = records.at(point.name());
     if (failed(record)) continue;
     judge::Series series{point.combination().name(), {}, judge::Marks::line};
@@ -236,7 +238,7 @@ Picture correlations(const Records& records, const Conditions& conditions) {
     }
     chart.series.push_back(std::move(series));
   }
-  const double time = theory_of(fluid_at({0, 4.5, published}, conditions)).collision_time;
+  const double time = theory_of(fluid_at({0, 4.5, method}, conditions)).collision_time;
   judge::Series theory{"exp(-w_0 t)", {}, judge::Marks::line};
   for (int n = 0; n <= 40; ++n) {
     const double t = 0.1 * n;
@@ -244,18 +246,19 @@ Picture correlations(const Records& records, const Conditions& conditions) {
   }
   chart.series.push_back(std::move(theory));
   return {"So20 Fig. 8: velocity autocorrelation",
-          fmt::format("{}, friction 4.5; the integral is the collision time.", published),
+          fmt::format("{}, friction 4.5; the integral is the collision time.", to_string(method)),
           std::move(chart),
           {}};
 }
 
 Picture against_friction(const Records& records, const Conditions& conditions, const char* title,
                          Interval Numbers::*measured, double Theory::*predicted) {
+  const auto method = leading_method(conditions);
   judge::Chart chart{title, {"friction", true}, {title, true}, {}};
   for (const double repulsion : {0.0, 25.0}) {
     judge::Series series{repulsion == 0 ? "no repulsion" : "a = 25", {}};
     for (const double friction : frictions()) {
-      const Point point{repulsion, friction, published};
+      const Point point{repulsion, friction, method};
       const json& record = records.at(point.name());
       if (failed(record)) continue;
       const Numbers numbers(fluid_at(point, conditions), record);
@@ -266,10 +269,10 @@ Picture against_friction(const Records& records, const Conditions& conditions, c
   judge::Series theory{"analytic, a priori", {}, judge::Marks::line};
   for (const double friction : frictions()) {
     theory.points.push_back(
-        {friction, theory_of(fluid_at({0, friction, published}, conditions)).*predicted, {}, {}});
+        {friction, theory_of(fluid_at({0, friction, method}, conditions)).*predicted, {}, {}});
   }
   chart.series.push_back(std::move(theory));
-  return {fmt::format("So20 eq. 17-26: {}", title), published, std::move(chart), {}};
+  return {fmt::format("So20 eq. 17-26: {}", title), to_string(method), std::move(chart), {}};
 }
 
 Outcome conclude(const Conditions& conditions, const Records& records) {
@@ -278,7 +281,7 @@ Outcome conclude(const Conditions& conditions, const Records& records) {
   for (const double repulsion : {0.0, 25.0}) {
     add_rows_of_all(repulsion, conditions, records, outcome);
   }
-  for (const auto& point : all_points()) {
+  for (const auto& point : all_points(conditions)) {
     if (const auto* record = record_or_remark(records, point.name(), outcome)) {
       add_rows(point, fluid_at(point, conditions), *record, outcome);
     }
@@ -290,7 +293,7 @@ Outcome conclude(const Conditions& conditions, const Records& records) {
       against_friction(records, conditions, "Prandtl number", &Numbers::prandtl, &Theory::prandtl));
   outcome.pictures.push_back(
       against_friction(records, conditions, "Schmidt number", &Numbers::schmidt, &Theory::schmidt));
-  const auto fluid = fluid_at(all_points().front(), conditions);
+  const auto fluid = fluid_at(all_points(conditions).front(), conditions);
   outcome.remarks.push_back(fmt::format(
       "Collision time and D from the velocity autocorrelation up to t = 4 in equilibrium ({:g} "
       "units "
@@ -321,6 +324,7 @@ const Experiment soleymani_2020_figure_8{
         "and without repulsion, at frictions from 2.25 to 18, by the paper's scheme (at 4.5 by "
         "shardlow-s1 too), beside the analytic values.",
     .parts = parts,
-    .conclude = conclude};
+    .conclude = conclude,
+    .unsuited = unsuited};
 
 }  // namespace driftless::reproduce

@@ -13,19 +13,25 @@ using nlohmann::json;
 
 constexpr double heat_flux = 10;
 
-std::string part_name(const Combination& combination, const char* method) {
-  return combination.name() + ", " + method;
+std::string part_name(const Combination& combination, const MethodChoice& method) {
+  return combination.name() + ", " + to_string(method);
 }
 
-std::vector<const char*> methods_for(const Combination& combination) {
-  if (combination.thermal_repulsion != 0) return {contrast};
-  return {published, contrast};
+bool runs(const MethodChoice& method, const Combination& combination) {
+  return !first_refusal(method, {fluid_of(combination)});
+}
+
+std::vector<MethodChoice> methods_for(const Combination& combination,
+                                      const Conditions& conditions) {
+  auto all = methods(conditions);
+  std::erase_if(all, [&](const MethodChoice& one) { return !runs(one, combination); });
+  return all;
 }
 
 std::vector<Part> parts(const Conditions& conditions) {
   std::vector<Part> all;
   for (const auto& combination : all_combinations()) {
-    for (const char* method : methods_for(combination)) {
+    for (const auto& method : methods_for(combination, conditions)) {
       const auto run =
           slabs_of(box_of(combination, method, conditions), heat_flux, conditions.effort);
       all.push_back({part_name(combination, method), cost_of(run.fluid, run.settle + run.duration),
@@ -104,8 +110,8 @@ std::string about_density(const Combination& combination) {
                                     : "A repulsion that is stronger than k T all but evens it out.";
 }
 
-void add_rows(const Combination& combination, const char* method, const json& record, double length,
-              Outcome& outcome) {
+void add_rows(const Combination& combination, const MethodChoice& method, const json& record,
+              double length, Outcome& outcome) {
   const auto setting =
       setting_of(combination.name(), method, fmt::format("heat flux {:g}", heat_flux));
   const Interval temperatures = hot_over_cold(record, "kinetic", length);
@@ -156,11 +162,12 @@ void add_rows(const Combination& combination, const char* method, const json& re
   outcome.rows.push_back(curvature);
 }
 
-Picture picture(const Records& records, const char* method, const std::vector<const char*>& keys,
-                const std::string& title, const std::string& unit) {
+Picture picture(const Records& records, const MethodChoice& method,
+                const std::vector<const char*>& keys, const std::string& title,
+                const std::string& unit) {
   judge::Chart chart{title, {"z"}, {unit}, {}};
   for (const auto& combination : all_combinations()) {
-    if (method == std::string(published) && combination.thermal_repulsion != 0) continue;
+    if (!runs(method, combination)) continue;
     const json& record = records.at(part_name(combination, method));
     if (failed(record)) continue;
     for (const char* key : keys) {
@@ -176,7 +183,7 @@ Picture picture(const Records& records, const char* method, const std::vector<co
   return {title,
           fmt::format("{}, heat flux {:g} each way from the hot slab, at a quarter of the box, to "
                       "the cold one, at three quarters.",
-                      method, heat_flux),
+                      to_string(method), heat_flux),
           std::move(chart),
           {}};
 }
@@ -185,19 +192,20 @@ Outcome conclude(const Conditions& conditions, const Records& records) {
   Outcome outcome;
   outcome.remarks = common_remarks(conditions);
   for (const auto& combination : all_combinations()) {
-    for (const char* method : methods_for(combination)) {
+    for (const auto& method : methods_for(combination, conditions)) {
       const auto* record = record_or_remark(records, part_name(combination, method), outcome);
       if (!record) continue;
       const double length = box_of(combination, method, conditions).lengths[2];
       add_rows(combination, method, *record, length, outcome);
     }
   }
-  for (const char* method : {published, contrast}) {
+  for (const auto& method : methods(conditions)) {
+    const auto name = to_string(method);
     outcome.pictures.push_back(picture(records, method, {"density"},
-                                       fmt::format("So20 Fig. 2: density profiles, {}", method),
+                                       fmt::format("So20 Fig. 2: density profiles, {}", name),
                                        "number density"));
     outcome.pictures.push_back(picture(records, method, {"internal", "kinetic"},
-                                       fmt::format("So20 Fig. 3: temperature profiles, {}", method),
+                                       fmt::format("So20 Fig. 3: temperature profiles, {}", name),
                                        "temperature"));
   }
   outcome.remarks.push_back(
@@ -205,6 +213,10 @@ Outcome conclude(const Conditions& conditions, const Records& records) {
       "equations of motion that conservation of energy and entropy demands "
       "(results/temperature_dependent_repulsion.md); the paper's scheme charges it in another way "
       "and is not run with it.");
+  if (conditions.method) {
+    const auto reason = first_refusal(*conditions.method, {fluid_of(all_combinations().back())});
+    if (reason) outcome.remarks.push_back(*reason + ".");
+  }
   outcome.remarks.push_back(
       "Temperatures are 1/<1/theta> of the internal energies and that of the kinetic energy. They "
       "part inside the slabs, where heat goes into internal energies and kinetic ones follow.");
@@ -225,6 +237,7 @@ const Experiment soleymani_2020_figures_2_3{
         "with conduction driven by differences of inverse temperatures and of temperatures, by the "
         "paper's scheme (but for the last) and by a sequential splitting (shardlow-s1).",
     .parts = parts,
-    .conclude = conclude};
+    .conclude = conclude,
+    .unsuited = unsuited};
 
 }  // namespace driftless::reproduce

@@ -22,11 +22,12 @@ const std::vector<double>& conductions() {
 
 struct Point {
   Combination combination;
-  const char* method;
+  MethodChoice method;
   double conduction;
 
   std::string name() const {
-    return fmt::format("{}, {}, conduction {:g}", combination.name(), method, conduction);
+    return fmt::format("{}, {}, conduction {:g}", combination.name(), to_string(method),
+                       conduction);
   }
 };
 
@@ -37,14 +38,16 @@ const std::vector<Combination>& shown() {
   return all;
 }
 
-std::vector<Point> all_points() {
+std::vector<Point> all_points(const Conditions& conditions) {
+  const auto both = methods(conditions);
   std::vector<Point> points;
   for (const auto& combination : shown()) {
     for (const double conduction : conductions()) {
-      points.push_back({combination, published, conduction});
+      points.push_back({combination, both.front(), conduction});
     }
+    if (both.size() == 1) continue;
     for (const double conduction : {10.0, 300.0}) {
-      points.push_back({combination, contrast, conduction});
+      points.push_back({combination, both.back(), conduction});
     }
   }
   return points;
@@ -64,7 +67,7 @@ flux::SlabRun run_of(const Point& point, const Conditions& conditions) {
 
 std::vector<Part> parts(const Conditions& conditions) {
   std::vector<Part> all;
-  for (const auto& point : all_points()) {
+  for (const auto& point : all_points(conditions)) {
     const auto run = run_of(point, conditions);
     all.push_back({point.name(), 1.1 * cost_of(run.fluid, run.settle + run.duration), false,
                    [run](const Workplace&) {
@@ -75,8 +78,9 @@ std::vector<Part> parts(const Conditions& conditions) {
 }
 
 std::string setting(const Point& point) {
-  return fmt::format("{}; {}, step {:g}; conduction {:g}", point.combination.name(), point.method,
-                     point.conduction >= 1000 ? 0.005 : 0.01, point.conduction);
+  return fmt::format("{}; {}, step {:g}; conduction {:g}", point.combination.name(),
+                     to_string(point.method), point.conduction >= 1000 ? 0.005 : 0.01,
+                     point.conduction);
 }
 
 Row plain_row(std::string quantity, const Point& point, const Interval& ours,
@@ -111,7 +115,7 @@ void add_rows(const Point& point, const json& record, Outcome& outcome) {
                                    "what particles carry: nothing of the method is assumed."));
   outcome.rows.push_back(
       plain_row("conductive flux by the law", point, flux_of("law conduction"), ""));
-  const bool pays_alone = std::string_view(point.method) == published;
+  const bool pays_alone = same(point.method, published);
   const Interval friction = flux_of("law friction work"), repulsion = flux_of("law repulsion work");
   const double half =
       0.5 * std::hypot(friction.high - friction.low, repulsion.high - repulsion.low);
@@ -123,7 +127,7 @@ void add_rows(const Point& point, const json& record, Outcome& outcome) {
                  : ""));
 }
 
-Picture shares(const Combination& combination, const Records& records) {
+Picture shares(const Combination& combination, const MethodChoice& method, const Records& records) {
   judge::Chart chart{"shares of the heat flux", {"conduction L_0", true}, {"heat flux"}, {}};
   const std::vector<std::pair<const char*, const char*>> shown_keys = {
       {"pairs", "through pairs (conductive)"},
@@ -134,7 +138,7 @@ Picture shares(const Combination& combination, const Records& records) {
   for (const auto& key : shown_keys) {
     judge::Series series{key.second, {}};
     for (const double conduction : conductions()) {
-      const json& record = records.at(Point{combination, published, conduction}.name());
+      const json& record = records.at(Point{combination, method, conduction}.name());
       if (failed(record)) continue;
       series.points.push_back(point_of(conduction, interval_of(record["crossed"][key.first])));
     }
@@ -146,13 +150,13 @@ Picture shares(const Combination& combination, const Records& records) {
        judge::Marks::line});
   return {fmt::format("So20 Fig. {}: conductive and diffusive flux, {}",
                       combination.repulsion == 0 ? 5 : 6, combination.name()),
-          fmt::format("{}; through the two planes midway between the slabs.", published),
+          fmt::format("{}; through the two planes midway between the slabs.", to_string(method)),
           std::move(chart),
           {}};
 }
 
 /// What comes from the hot and from the cold side, by kind.
-Picture sides(const Combination& combination, const Records& records) {
+Picture sides(const Combination& combination, const MethodChoice& method, const Records& records) {
   judge::Chart chart{"what particles carry from either side",
                      {"conduction L_0", true},
                      {"energy carried per area and time"},
@@ -161,7 +165,7 @@ Picture sides(const Combination& combination, const Records& records) {
     for (const char* kind : {"internal", "kinetic", "potential"}) {
       judge::Series series{fmt::format("from the {} side, {}", side, kind), {}};
       for (const double conduction : conductions()) {
-        const json& record = records.at(Point{combination, published, conduction}.name());
+        const json& record = records.at(Point{combination, method, conduction}.name());
         if (failed(record)) continue;
         const auto carried = interval_of(record["crossed"][fmt::format("{} {}", side, kind)]);
         series.points.push_back(point_of(conduction, carried));
@@ -181,14 +185,14 @@ Picture sides(const Combination& combination, const Records& records) {
 Outcome conclude(const Conditions& conditions, const Records& records) {
   Outcome outcome;
   outcome.remarks = common_remarks(conditions);
-  for (const auto& point : all_points()) {
+  for (const auto& point : all_points(conditions)) {
     if (const auto* record = record_or_remark(records, point.name(), outcome)) {
       add_rows(point, *record, outcome);
     }
   }
   for (const auto& combination : shown()) {
-    outcome.pictures.push_back(shares(combination, records));
-    outcome.pictures.push_back(sides(combination, records));
+    outcome.pictures.push_back(shares(combination, leading_method(conditions), records));
+    outcome.pictures.push_back(sides(combination, leading_method(conditions), records));
   }
   outcome.remarks.push_back(
       "Balance of a plane, exact for every step: a side's energy changes by what crossing "
@@ -197,10 +201,12 @@ Outcome conclude(const Conditions& conditions, const Records& records) {
       "those that are there, half to those that cross. Beyond the imposed heat both sides change "
       "by "
       "nothing else.");
-  outcome.remarks.push_back(
-      "In the paper's scheme a particle's own energy, kinetic, internal and half of the potential, "
-      "changes by conduction alone (eq. 27-31): pairs do no work across a plane, and without "
-      "conduction nothing but particles would carry heat.");
+  if (same(leading_method(conditions), published)) {
+    outcome.remarks.push_back(
+        "In the paper's scheme a particle's own energy, kinetic, internal and half of the "
+        "potential, changes by conduction alone (eq. 27-31): pairs do no work across a plane, and "
+        "without conduction nothing but particles would carry heat.");
+  }
   outcome.remarks.push_back(
       "By symmetry each of the two planes between the slabs passes half of the heat; the fluxes "
       "are "
@@ -222,6 +228,7 @@ const Experiment soleymani_2020_figures_5_6{
         "scheme and by shardlow-s1; the work of the pair forces, which the paper's scheme does not "
         "pass, is measured too.",
     .parts = parts,
-    .conclude = conclude};
+    .conclude = conclude,
+    .unsuited = unsuited};
 
 }  // namespace driftless::reproduce

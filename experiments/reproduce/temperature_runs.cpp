@@ -83,7 +83,7 @@ Eigen::MatrixXd averaged_samples(const json& replica) {
 
 }  // namespace
 
-json run_temperatures(const TemperatureRuns& runs, const std::string& method, double step,
+json run_temperatures(const TemperatureRuns& runs, const MethodChoice& method, double step,
                       unsigned replica, std::uint64_t seed) {
   const auto& prepared = judge::prepared_once(runs.scene, seed, runs.replicas);
   const auto stride = static_cast<std::uint64_t>(std::max(1L, std::lround(sample_period / step)));
@@ -96,8 +96,8 @@ json run_temperatures(const TemperatureRuns& runs, const std::string& method, do
     inverse.push_back(inverse_temperature(system));
     if (time >= kinetic_end) distances.take(system.state());
   };
-  const auto failure = judge::run_isolated({{method, {}}}, prepared, replica, Vector::Zero(), step,
-                                           count, stride, sample);
+  const auto failure =
+      judge::run_isolated({method}, prepared, replica, Vector::Zero(), step, count, stride, sample);
   json record = {{"times", times}, {"kinetic", kinetic}, {"inverse", inverse}};
   if (distances.taken() > 0) record.update(distances.record());
   if (failure) {

@@ -30,8 +30,8 @@ inline constexpr double distance_bin = 0.025;
 /// One replica, from the exact law: {"times", "kinetic", "inverse": <1/theta>, "g": counts over
 /// those of an ideal gas, by bins, "core": the same of all distances below `core`}, and a "failure"
 /// in words if one ended it; then without "g" and "core" if it came before `kinetic_end`.
-nlohmann::json run_temperatures(const TemperatureRuns& runs, const std::string& method, double step,
-                                unsigned replica, std::uint64_t seed);
+nlohmann::json run_temperatures(const TemperatureRuns& runs, const MethodChoice& method,
+                                double step, unsigned replica, std::uint64_t seed);
 
 /// The replicas of a method at a step.
 class TemperatureCell {

@@ -138,6 +138,22 @@ test('theory has a column of its own, and a verdict against it says so', async (
   await page.context().close();
 });
 
+test('an experiment under another method stands beside the one with the paper\'s', async () => {
+  const [experiment] = papers.experiments;
+  const other = {...experiment, method: 'groot-warren:lambda=0.5'};
+  const {page, faults} = await open(page_of({...papers, experiments: [experiment, other]}));
+  const id = 'roll-with-groot-warren-lambda-0-5';
+  const titles = await page.$$eval('h2', (all) => all.map(({textContent}) => textContent));
+  assert.ok(titles.includes('The convection <roll>'));
+  assert.ok(titles.includes('The convection <roll>, with groot-warren:lambda=0.5'));
+  await page.click(`#overview-table a[href="#${id}"]`);
+  assert.equal(await page.evaluate(() => document.querySelector(':target').id), id);
+  const twice = await page.$$eval('[id]', (all) => all.length - new Set(all.map((one) => one.id)).size);
+  assert.equal(twice, 0);
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
+
 test('a link of the overview leads to its experiment', async () => {
   const {page} = await open(page_of(papers));
   await page.click('#overview-table a[href="#broken"]');

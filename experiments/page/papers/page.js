@@ -5,10 +5,10 @@ import {number} from '../format.js';
 import {render_provenance} from '../provenance.js';
 import {chart_spec} from '../series_chart.js';
 import {field_spec, longest_arrow} from './field.js';
-import {overview_table, rows_table} from './tables.js';
+import {key_of, overview_table, rows_table, title_of} from './tables.js';
 
 const papers = JSON.parse(document.getElementById('result').textContent);
-const chart_id = (experiment, index) => `chart-${experiment.name}-${index}`;
+const chart_id = (experiment, index) => `chart-${key_of(experiment)}-${index}`;
 
 function picture_note({caption, field}) {
   const longest = field ? longest_arrow(field) : 0;
@@ -50,10 +50,11 @@ function remarks_of({remarks}) {
 }
 
 function section_of(experiment) {
-  const {name, source, title, question, failure, rows, command, commit} = experiment;
+  const {name, source, question, failure, rows, command, commit} = experiment;
+  const title = title_of(experiment);
   return element(
     'section',
-    {id: name, class: 'experiment', 'aria-label': title},
+    {id: key_of(experiment), class: 'experiment', 'aria-label': title},
     element('p', {class: 'kind'}, `${source} · ${name}`),
     element('h2', {}, title),
     element('p', {}, question),
@@ -69,14 +70,14 @@ function draw_pictures() {
   for (const experiment of papers.experiments) {
     experiment.pictures.forEach(({title, chart, field}, index) => {
       const spec = chart ? chart_spec(chart) : field ? field_spec(field) : null;
-      draw(chart_id(experiment, index), spec, `${title}, ${experiment.source}`);
+      draw(chart_id(experiment, index), spec, `${title}, ${experiment.source}${experiment.method ? ` with ${experiment.method}` : ''}`);
     });
   }
 }
 
 function start() {
   const count = papers.experiments.length;
-  const title = count === 1 ? papers.experiments[0].title : `${count} experiments of the papers`;
+  const title = count === 1 ? title_of(papers.experiments[0]) : `${count} experiments of the papers`;
   document.title = `${title} · Driftless`;
   replace('title', title);
   replace('overview-place', overview_table(papers.experiments));

@@ -6,14 +6,19 @@ const verdicts = ['agrees', 'differs', 'not resolved', 'ours alone'];
 const css_class = (verdict) => verdict.replaceAll(' ', '-');
 const numeric = (text) => ({text, class: 'number'});
 
+// One experiment may stand in a report under several methods: what tells it apart there, fit for an id.
+export const key_of = ({name, method}) => (method ? `${name}-with-${method.replace(/[^\w-]/g, '-')}` : name);
+export const title_of = ({title, method}) => (method ? `${title}, with ${method}` : title);
+
 export function overview_table(experiments) {
-  const rows = experiments.map(({name, source, title, rows: values, failure}) => {
+  const rows = experiments.map((experiment) => {
+    const {source, rows: values, failure} = experiment;
     const counts = verdicts.map((verdict) => {
       const count = values.filter((row) => row.verdict === verdict).length;
       return {text: failure ? '–' : String(count), class: `number ${count ? css_class(verdict) : 'none'}`};
     });
     return [
-      element('a', {href: `#${name}`}, title),
+      element('a', {href: `#${key_of(experiment)}`}, title_of(experiment)),
       source,
       ...counts,
       failure ? {text: 'failed', class: 'differs'} : '',
@@ -70,7 +75,8 @@ function verdict_text({verdict, paper, theory, ours}) {
 
 const with_unit = (text, unit) => (unit && unit !== '1' ? `${text}, ${unit}` : text);
 
-export function rows_table({name, rows}) {
+export function rows_table(experiment) {
+  const {rows} = experiment;
   // Only some experiments have a theory beside a paper whose numbers are not known to us.
   const theory = rows.some((row) => row.theory);
   const head = ['quantity', 'setting', 'paper', ...(theory ? ['theory'] : []), 'ours, 95 %', 'verdict', 'explanation'];
@@ -83,7 +89,7 @@ export function rows_table({name, rows}) {
     {text: verdict_text(row), class: `verdict ${css_class(row.verdict)}`},
     {text: row.explanation.replaceAll('+-', '±'), class: 'explanation'},
   ]);
-  const made = table(`rows-${name}`, '', head, body);
+  const made = table(`rows-${key_of(experiment)}`, '', head, body);
   made.classList.add('rows-table');
   return made;
 }
