@@ -80,14 +80,26 @@ const Experiment other{"other",
                        },
                        sum_of_parts};
 
+json reproduced_under(const Conditions& conditions, const fs::path& folder, unsigned threads) {
+  ReproduceOptions options;
+  options.directory = folder;
+  options.conditions = conditions;
+  options.threads = threads;
+  options.command = "driftless reproduce";
+  options.quiet = true;
+  return run_experiments({&summing, &other}, options);
+}
+
 json reproduced(const fs::path& folder, unsigned threads, std::uint64_t seed = 1) {
-  return run_experiments({&summing, &other},
-                         {folder, {Effort::quick, seed}, threads, "driftless reproduce", true});
+  Conditions conditions;
+  conditions.seed = seed;
+  return reproduced_under(conditions, folder, threads);
 }
 
 json reproduced_with(const fs::path& folder, const MethodChoice& method) {
-  return run_experiments({&summing, &other},
-                         {folder, {Effort::quick, 1, method}, 2, "driftless reproduce", true});
+  Conditions conditions;
+  conditions.method = method;
+  return reproduced_under(conditions, folder, 2);
 }
 
 class Reproduce : public ::testing::Test {

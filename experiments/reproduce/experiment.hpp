@@ -27,7 +27,7 @@ std::string to_string(Effort effort);
 struct Conditions {
   Effort effort = Effort::quick;
   std::uint64_t seed = 1;
-  std::optional<MethodChoice> method = {};  ///< in the place of the paper's
+  std::optional<MethodChoice> method = std::nullopt;  ///< in the place of the paper's
 
   /// The method of the runs that are the paper's under `published`, or ours where it names none.
   MethodChoice method_or(const MethodChoice& published) const { return method.value_or(published); }
