@@ -52,6 +52,17 @@ std::optional<std::string> unsuited(const MethodChoice& method) {
   return first_refusal(method, fluids);
 }
 
+bool runs(const MethodChoice& method, const Combination& combination) {
+  return !first_refusal(method, {fluid_of(combination)});
+}
+
+std::vector<MethodChoice> methods_for(const Combination& combination,
+                                      const Conditions& conditions) {
+  auto all = methods(conditions);
+  std::erase_if(all, [&](const MethodChoice& one) { return !runs(one, combination); });
+  return all;
+}
+
 FluidParameters fluid_of(const Combination& combination) {
   return {.boltzmann = 1,
           .mass = 1,

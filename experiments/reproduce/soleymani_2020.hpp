@@ -38,6 +38,9 @@ const std::vector<Combination>& all_combinations();
 /// Why a method cannot run one of the combinations without a repulsion that follows the
 /// temperature, nothing if it runs them all.
 std::optional<std::string> unsuited(const MethodChoice& method);
+bool runs(const MethodChoice& method, const Combination& combination);
+/// Those of methods() that run a combination, which the contrast always does.
+std::vector<MethodChoice> methods_for(const Combination& combination, const Conditions& conditions);
 
 /// The fluid of a combination: m = k = r_c = 1, friction 4.5 at T = 1 with the noise closure, heat
 /// capacity 60, conduction 300, weights (1 - r)^2.

@@ -17,17 +17,6 @@ std::string part_name(const Combination& combination, const MethodChoice& method
   return combination.name() + ", " + to_string(method);
 }
 
-bool runs(const MethodChoice& method, const Combination& combination) {
-  return !first_refusal(method, {fluid_of(combination)});
-}
-
-std::vector<MethodChoice> methods_for(const Combination& combination,
-                                      const Conditions& conditions) {
-  auto all = methods(conditions);
-  std::erase_if(all, [&](const MethodChoice& one) { return !runs(one, combination); });
-  return all;
-}
-
 std::vector<Part> parts(const Conditions& conditions) {
   std::vector<Part> all;
   for (const auto& combination : all_combinations()) {
