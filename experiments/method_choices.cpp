@@ -57,13 +57,10 @@ Options read_options(const Method& method, const json& object, const Location& l
   return options;
 }
 
-MethodChoice read_method(const json& value, const Location& location) {
+MethodChoice read_choice(const json& value, const Location& location,
+                         const std::vector<std::string>& words) {
   const auto names = method_names();
-  if (!value.is_object()) {
-    auto words = names;
-    words.push_back(everything);
-    return {std::string(find_named(value, location, words).name), {}};
-  }
+  if (!value.is_object()) return {std::string(find_named(value, location, words).name), {}};
   require_known_keys(value, location, "a method", {"name", "options"});
   const auto& name = require_key(value, location, "name", either(names, true));
   const Method& method = find_named(name, location.member("name"), names);
@@ -81,6 +78,13 @@ void add(const MethodChoice& choice, const Location& location, std::vector<Metho
                     "a method once, or with other options");
   }
   chosen.push_back(choice);
+}
+
+/// Where a list may hold "all" too.
+std::vector<std::string> names_and_all() {
+  auto words = method_names();
+  words.push_back(everything);
+  return words;
 }
 
 json option_schema(const OptionSpec& spec) {
@@ -134,6 +138,10 @@ bool same(const MethodChoice& one, const MethodChoice& other) {
   return true;
 }
 
+MethodChoice read_method(const json& value, const Location& location) {
+  return read_choice(value, location, method_names());
+}
+
 std::vector<MethodChoice> read_methods(const json& value, const Location& location) {
   const bool all = value.is_string() && value == everything;
   const json list = all ? json::array({everything}) : value;
@@ -148,16 +156,14 @@ std::vector<MethodChoice> read_methods(const json& value, const Location& locati
     if (list[i].is_string() && list[i] == everything) {
       for (const auto& name : method_names()) add({name, {}}, place, chosen);
     } else {
-      add(read_method(list[i], place), place, chosen);
+      add(read_choice(list[i], place, names_and_all()), place, chosen);
     }
   }
   return chosen;
 }
 
 json methods_schema() {
-  auto names = method_names();
-  names.push_back(everything);
-  json choices = json::array({{{"enum", names}}});
+  json choices = json::array({{{"enum", names_and_all()}}});
   for (const auto* method : methods()) choices.push_back(choice_schema(*method));
   return {{"anyOf",
            {{{"const", everything}},

@@ -11,6 +11,8 @@ namespace driftless {
 
 /// The parts of a study file, each with its reader and its schema. Every reader throws InputError.
 
+/// A name, or {"name", "options"}.
+MethodChoice read_method(const nlohmann::json& value, const Location& location);
 /// "all", or a list of names, of {"name", "options"}, or of "all".
 std::vector<MethodChoice> read_methods(const nlohmann::json& value, const Location& location);
 nlohmann::json methods_schema();

@@ -100,7 +100,7 @@ TEST_F(Program, AMethodThatCannotRunAnExperimentEndsWithTwoInOneSentenceAndWrite
   for (const auto& [method, words] :
        {std::pair("espanol", "cannot run mackie-1999-walls: espanol is built for"),
         std::pair("shardlow-s9", "did you mean \"shardlow-s"),
-        std::pair("all", "allowed is one method")}) {
+        std::pair("all", "is \"all\"; allowed is \"averaged-drift")}) {
     const auto outcome = call(std::string("reproduce mackie-1999-walls --quick --method ") +
                               method + " -o " + output.string());
     EXPECT_EQ(outcome.code, 2) << outcome.text;

@@ -193,7 +193,7 @@ TEST_F(Simulate, FaultsAreOneSentenceAndWriteNothing) {
        "did you mean \"trotter\"?"},
       {scene_ + " --method trotter:no=1 --time-step 0.01 --duration 2" + output, "no"},
       {scene_ + " --method all --time-step 0.01 --duration 2" + output,
-       "--method: is \"all\"; allowed is one method"},
+       "--method: is \"all\"; allowed is \"averaged-drift\""},
       {"groot-warren-1997 --method metropolized-splitting --time-step 0.01 --duration 2" + output,
        "is \"metropolized-splitting\", which cannot run this scene: "},
       {times + " --time-step -1 --duration 2", "--time-step: is -1"},

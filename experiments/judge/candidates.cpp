@@ -45,12 +45,7 @@ std::vector<Candidate> read_candidates(const std::vector<std::string>& texts) {
 }
 
 MethodChoice read_method_option(const std::string& text) {
-  const auto candidates = read_candidates({text});
-  if (candidates.size() != 1) {
-    Location("command line", "--method")
-        .refuse("is " + describe(json(text)) + "; allowed is one method");
-  }
-  return candidates.front().choice;
+  return read_method(as_in_study(text), Location("command line", "--method"));
 }
 
 std::vector<const Examination*> read_examinations(const std::vector<std::string>& names) {
