@@ -1,6 +1,9 @@
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
 
 /// Lists of JSON objects with a "name".
 namespace driftless {
@@ -13,16 +16,21 @@ inline const nlohmann::json* find_named(const nlohmann::json& list, const nlohma
   return nullptr;
 }
 
-/// Of everything in `order`, pointers to what has a name, the first list's object or else the
-/// second's; what neither has is left out.
+/// Of everything in `order`, pointers to what has a name, the objects of that name, those with a
+/// "method" after the one without and each method once: the first list's object or else the
+/// second's.
 template <class Order>
 nlohmann::json united_by_name(const Order& order, const nlohmann::json& first,
                               const nlohmann::json& second) {
   nlohmann::json all = nlohmann::json::array();
   for (const auto* one : order) {
-    const auto* found = find_named(first, one->name);
-    if (!found) found = find_named(second, one->name);
-    if (found) all.push_back(*found);
+    std::map<std::string, nlohmann::json> by_method;
+    for (const auto* list : {&second, &first}) {
+      for (const auto& object : *list) {
+        if (object["name"] == one->name) by_method[object.value("method", "")] = object;
+      }
+    }
+    for (auto& [method, object] : by_method) all.push_back(std::move(object));
   }
   return all;
 }

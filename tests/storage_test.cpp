@@ -108,7 +108,7 @@ TEST_P(StorageOfMethod, TakesAlongWhatIsKeptBetweenSteps) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, StorageOfMethod, ::testing::ValuesIn(methods()), test_name);
 
-/// Keeps the velocities of a step's start, and says so or not.
+/// Keeps something between steps that it does not bring along.
 class Remembering : public Integrator {
  public:
   void step(System& system, double) override { kept_.assign(system.size(), 1.0); }

@@ -197,8 +197,8 @@ std::string traffic_table(const json& bench) {
       "the next makes a step faster than this limit. The triad counts its writes once too.");
   for (const auto& [kernel, parts] : bench["scaling"]["traffic"].items()) {
     text += "<h3>" + escaped(kernel) +
-            "</h3><div class=\"scroll\"><table><tr><th>part</th><th>in order</th><th>per pair</th>"
-            "</tr>\n";
+            "</h3><div class=\"scroll\"><table><tr><th>part</th><th>in order</th><th>per "
+            "pair</th></tr>\n";
     for (const auto& part : parts) {
       text += "<tr><td>" + escaped(part["part"].get<std::string>()) + "</td>" +
               cell(part["bytes_in_order"], "{:.0f}") + cell(part["bytes_per_pair"], "{:.0f}") +

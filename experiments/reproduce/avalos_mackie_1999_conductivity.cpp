@@ -5,6 +5,7 @@
 #include "experiments/avalos_mackie_fluid.hpp"
 #include "experiments/reproduce/estimates.hpp"
 #include "experiments/reproduce/experiments.hpp"
+#include "experiments/reproduce/interval_arithmetic.hpp"
 #include "experiments/transport/ideal_runs.hpp"
 #include "experiments/transport/network.hpp"
 #include "experiments/transport/theory.hpp"
@@ -70,7 +71,7 @@ json relaxation(double range, double scaling, double step, const Conditions& con
   transport::WaveSchedule schedule;
   schedule.step = step;
   schedule.samples = 100;
-  schedule.stride = std::max<std::uint64_t>(1, std::llround(window / (100 * step)));
+  schedule.stride = transport::stride_of(window, schedule.samples, step);
   schedule.impositions = range == am99::few ? 2 : 1;
   const transport::Waves waves{{0, 1, 2}, 1, 0, 0, 0.05};
   const auto records = transport::relax_replicas(run, waves, schedule);
@@ -250,9 +251,7 @@ void small_rows(const Records& records, Outcome& outcome) {
     row.unit = "1";
     row.paper = Interval{1, 0.9, 1.1};
     row.paper_text = "independent of L_0";
-    Estimate ratio = scaled(*more, 1 / less->mean);
-    ratio.error = ratio.mean * std::hypot(more->error / more->mean, less->error / less->mean);
-    row.ours = interval_of(ratio);
+    row.ours = ratio(interval_of(*more), interval_of(*less));
     row.verdict = compare(row.ours, *row.paper, 0.5);
     row.explanation = fmt::format(
         "mean field {:.3f}: what a particle carries shrinks with L_0 as soon as conduction takes "

@@ -71,7 +71,7 @@ Plan plan_of(double range, double width, double wavelength, const Conditions& co
   const double k = 2 * pi / wavelength;
   const double window = 4.5 / (mean_field(range, wavelength) * k * k);
   schedule.samples = 80;
-  schedule.stride = std::max<std::uint64_t>(1, std::llround(window / (80 * schedule.step)));
+  schedule.stride = transport::stride_of(window, schedule.samples, schedule.step);
   // So many that the noise of a few thousand particles is left.
   const double particles = conditions.effort == Effort::quick ? 1.5e4 : 1.2e5;
   schedule.impositions = static_cast<unsigned>(

@@ -6,6 +6,7 @@
 #include "experiments/avalos_mackie_fluid.hpp"
 #include "experiments/reproduce/estimates.hpp"
 #include "experiments/reproduce/experiments.hpp"
+#include "experiments/reproduce/interval_arithmetic.hpp"
 #include "experiments/transport/ideal_runs.hpp"
 #include "experiments/transport/theory.hpp"
 #include "model/differentiable.hpp"
@@ -127,8 +128,8 @@ json measure(const Cell& cell, const Conditions& conditions) {
   transport::WaveSchedule schedule;
   schedule.step = cell.step();
   schedule.samples = 60;
-  const double steps = decay_times * cell.decay_time() / schedule.step;
-  schedule.stride = std::max<std::uint64_t>(1, std::llround(steps / 60));
+  schedule.stride =
+      transport::stride_of(decay_times * cell.decay_time(), schedule.samples, schedule.step);
   schedule.impositions = impositions;
   // A transverse wave need not be small: friction and streaming are linear in its velocities, and
   // the heat that it leaves is less than a hundredth of what there is.
@@ -159,15 +160,13 @@ void add_row(const Cell& cell, const Records& records, Outcome& outcome) {
   const auto found = read_estimate(records.at(cell.name()));
   const auto constant = read_estimate(records.at(cell.constant().name()));
   if (!found || !constant) return;
-  Estimate ratio = scaled(*found, 1 / constant->mean);
-  ratio.error = std::hypot(found->error, ratio.mean * constant->error) / constant->mean;
   Row row;
   row.quantity = fmt::format("{} over that of a constant coefficient of the law's value",
                              coefficient_of(cell.what));
   row.setting = fmt::format("law {} = {:.3f} at T* = {:g}", cell.wish->name,
                             cell.wish->factor(cell.temperature), cell.temperature);
   row.unit = "1";
-  row.ours = interval_of(ratio);
+  row.ours = ratio(interval_of(*found), interval_of(*constant));
   put_theory(row, 1, "the law is followed", 0.1);
   row.explanation = fmt::format("the {} itself is {:.3g}, in the mean field {:.3g}",
                                 coefficient_of(cell.what), found->mean, cell.mean_field());

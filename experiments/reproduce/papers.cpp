@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "experiments/files.hpp"
 #include "experiments/json_text.hpp"
+#include "experiments/named_list.hpp"
 #include "experiments/page.hpp"
 #include "experiments/study.hpp"
 #include "experiments/text_file.hpp"
@@ -110,22 +110,8 @@ std::string rows_of(const json& experiment) {
 
 json united(const std::optional<json>& earlier, json papers) {
   if (!earlier) return papers;
-  // By experiment and method; the paper's own method, which has no name here, comes first.
-  std::map<std::pair<std::string, std::string>, json> found;
-  const auto take = [&](const json& report) {
-    for (const auto& one : report["experiments"]) {
-      found[{text_of(one, "name"), text_of(one, "method")}] = one;
-    }
-  };
-  take(*earlier);
-  take(papers);
-  json all = json::array();
-  for (const auto* experiment : experiments()) {
-    for (const auto& [key, record] : found) {
-      if (key.first == experiment->name) all.push_back(record);
-    }
-  }
-  papers["experiments"] = std::move(all);
+  papers["experiments"] =
+      united_by_name(experiments(), papers["experiments"], (*earlier)["experiments"]);
   return papers;
 }
 

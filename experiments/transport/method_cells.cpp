@@ -23,10 +23,6 @@ struct Curves {
   std::vector<std::vector<double>> moved, heat, transverse, longitudinal, temperature;
 };
 
-std::uint64_t stride_of(double window, std::uint64_t samples, double step) {
-  return std::max<std::uint64_t>(1, std::llround(window / (static_cast<double>(samples) * step)));
-}
-
 bool has_flow_box(const TransportScene& scene) { return scene.flow_width > 0; }
 
 System cube_start(const TransportScene& scene, std::uint64_t seed, unsigned replica) {

@@ -1,5 +1,6 @@
 #include "experiments/transport/waves.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -68,6 +69,10 @@ void impose(const Waves& waves, double phase, System& system) {
     velocity += thermal * velocity_wave(waves, system.box(), positions[i], phase);
   });
   keep_momentum_and_energy(momentum, energy, system);
+}
+
+std::uint64_t stride_of(double window, std::uint64_t samples, double step) {
+  return std::max<std::uint64_t>(1, std::llround(window / (static_cast<double>(samples) * step)));
 }
 
 WaveRecord relax(const Waves& waves, const WaveSchedule& schedule, Integrator& integrator,

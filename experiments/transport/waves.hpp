@@ -41,6 +41,9 @@ struct WaveSchedule {
                                ///< left of the last is orthogonal to the next
 };
 
+/// Steps between samples, of which a window of time has so many; at least one.
+std::uint64_t stride_of(double window, std::uint64_t samples, double step);
+
 /// Runs the system, whose steps are counted on from `done`. Throws StepFailure.
 WaveRecord relax(const Waves& waves, const WaveSchedule& schedule, Integrator& integrator,
                  System& system, std::uint64_t& done);
