@@ -3,8 +3,9 @@
 namespace driftless {
 namespace {
 
-// Fewer particles lie in the cache in any order; many are far apart again after a hundred steps.
-constexpr std::size_t most_in_any_order = 10000;
+// Fewer particles lie in the cache of one core in any order; more are far apart again after a
+// hundred steps, and every thread then reads what others have written.
+constexpr std::size_t most_in_any_order = 1000;
 constexpr std::uint64_t steps_in_order = 50;
 
 }  // namespace

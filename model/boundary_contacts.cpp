@@ -27,8 +27,9 @@ void BoundaryContacts::list_groups(const Fluid& fluid, const Box& box) {
   }
 }
 
-void BoundaryContacts::search(Group& group, std::size_t species, std::size_t share,
-                              const CellGrid& cells) const {
+void BoundaryContacts::find_some(const CellGrid& cells, std::size_t search) {
+  Group& group = groups_[search];
+  const std::size_t species = species_[search], share = share_[search];
   const std::size_t particles = cells.particles();
   const auto begin = static_cast<std::uint32_t>(particles * share / shares);
   const auto end = static_cast<std::uint32_t>(particles * (share + 1) / shares);
@@ -48,15 +49,6 @@ void BoundaryContacts::search(Group& group, std::size_t species, std::size_t sha
     group.contacts.append(n, side);
   }
   group.contacts.pad(begin < end ? begin : 0, side);
-}
-
-void BoundaryContacts::find(const Fluid& fluid, const CellGrid& cells, const Threads& threads) {
-  if (groups_.empty()) list_groups(fluid, cells.box());
-  const std::size_t tasks[] = {groups_.size()};
-  if (groups_.empty()) return;
-  threads.phases(tasks, [&](unsigned, std::size_t, std::size_t n) {
-    search(groups_[n], species_[n], share_[n], cells);
-  });
 }
 
 std::size_t BoundaryContacts::contacts() const {

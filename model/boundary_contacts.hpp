@@ -34,8 +34,14 @@ class BoundaryContacts {
     std::size_t boundary = 0;
   };
 
-  /// Finds the contacts anew; the fluid (Fluid::within) must live as long as they are used.
-  void find(const Fluid& fluid, const CellGrid& cells, const Threads& threads);
+  /// Finds the contacts anew in steps: begin_find(), then find_some() for each number below
+  /// searches(), which may be treated at once. The fluid (Fluid::within) must live as long as they
+  /// are used.
+  void begin_find(const Fluid& fluid, const Box& box) {
+    if (groups_.empty()) list_groups(fluid, box);
+  }
+  std::size_t searches() const { return groups_.size(); }
+  void find_some(const CellGrid& cells, std::size_t search);
 
   bool any() const { return !groups_.empty(); }
   /// How many groups each phase has: those of a phase may be treated at once, phase after phase.
@@ -47,7 +53,6 @@ class BoundaryContacts {
 
  private:
   void list_groups(const Fluid& fluid, const Box& box);
-  void search(Group& group, std::size_t species, std::size_t share, const CellGrid& cells) const;
 
   std::vector<Group> groups_;
   std::vector<std::size_t> species_, share_;  ///< of each group

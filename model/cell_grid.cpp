@@ -7,8 +7,36 @@
 #include <utility>
 
 #include "model/lanes.hpp"
+#include "model/picked_lanes.hpp"
 
 namespace driftless {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Fills `places` with those where the cell is one from `first` to below `last`, and `before` with
+/// how many are of cells below. The cells are readable beyond the end by a vector. Returns how
+/// many.
+std::size_t find_places(const std::vector<std::uint32_t>& cells, std::size_t particles,
+                        std::uint32_t first, std::uint32_t last, std::vector<std::uint32_t>& places,
+                        std::uint32_t& before) {
+  const Indices indices;
+  const auto begin = hn::Set(indices, first), length = hn::Set(indices, last - first);
+  places.resize(particles + hn::Lanes(indices));
+  std::size_t count = 0, below = 0;
+  for (std::size_t n = 0; n < particles; n += hn::Lanes(indices)) {
+    const auto counted = hn::FirstN(indices, particles - n);
+    const auto cell = hn::LoadU(indices, cells.data() + n);
+    const auto inside = hn::Lt(hn::Sub(cell, begin), length);
+    below += hn::CountTrue(indices, hn::And(counted, hn::Lt(cell, begin)));
+    count += store_picked(counting_from(static_cast<std::uint32_t>(n)), hn::And(counted, inside),
+                          places.data() + count);
+  }
+  before = static_cast<std::uint32_t>(below);
+  return count;
+}
+
+}  // namespace
 
 CellGrid::CellGrid(const Box& box, double range, std::size_t particles)
     : box_(box), lengths_(box.lengths), particles_(particles) {
@@ -45,13 +73,58 @@ void CellGrid::cut(double range) {
   // Below four cells no two groups of cells are apart.
   single_ = count_.maxCoeff() < 4;
   if (single_) count_ = Eigen::Vector3i::Ones();
+  cut_tiles();
+  order_rows();
 }
 
-void CellGrid::sort(const State& state, const Threads& threads) {
+void CellGrid::cut_tiles() {
+  constexpr int width = 2;  // tiles of one colour are then apart by no less
+  for (int axis = 0; axis < 3; ++axis) {
+    tiles_[axis] = count_[axis] < 4 ? 1 : 2 * (count_[axis] / (2 * width));
+  }
+  // Columns have half as many colours, each a phase to wait for; of many particles those of a tile
+  // stay in the cache.
+  if (!few() || tiles_.minCoeff() == 1) return;
+  int along = 0;
+  tiles_.minCoeff(&along);
+  tiles_[along] = 1;
+}
+
+// What a thread works on lies side by side: tiles that are neighbours and of different colours.
+void CellGrid::order_rows() {
+  struct Row {
+    int z_tiles, y_tiles, z, y;
+    auto operator<=>(const Row&) const = default;
+  };
+  std::vector<Row> rows;
+  for (int z_tile = 0; z_tile < tiles_[2]; ++z_tile) {
+    for (int y_tile = 0; y_tile < tiles_[1]; ++y_tile) {
+      for (int z = cell_of(2, z_tile); z < cell_of(2, z_tile + 1); ++z) {
+        for (int y = cell_of(1, y_tile); y < cell_of(1, y_tile + 1); ++y) {
+          rows.push_back({z_tile / 2, y_tile / 2, z, y});
+        }
+      }
+    }
+  }
+  std::sort(rows.begin(), rows.end());
+  row_.resize(rows.size());
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    row_[row(rows[n].y, rows[n].z)] = n * static_cast<std::size_t>(count_[0]);
+  }
+}
+
+void CellGrid::sort(const State& state) {
+  begin_sort(state);
+  assign(state, 0, 1);
+  fill(state, 0, 1);
+}
+
+void CellGrid::begin_sort(const State& state) {
   particles_ = state.size();
   // Vectors of single precision are read beyond the end.
   const std::size_t padded = state.size() + 2 * Lanes::count();
-  cell_or_number_.resize(state.size());
+  cell_.resize(padded);
+  number_.resize(state.size());
   entries_.resize(state.size());
   species_.resize(state.species.size());
   position_.resize(padded);
@@ -61,120 +134,55 @@ void CellGrid::sort(const State& state, const Threads& threads) {
   next_.resize(cells);
   begin_.resize(cells + 1);
   begin_[cells] = static_cast<std::uint32_t>(state.size());
-  // Every thread hands a share of the particles out to parts of the cells, a part being one
-  // thread's: no two threads write side by side.
-  if (parts_ != threads.count()) cut_parts(threads.count());
-  handed_out_.resize(parts_ > 1 ? state.size() : 0);
-  part_end_.resize(parts_ * parts_);
-  const std::size_t tasks[] = {parts_, parts_};
-  threads.phases(tasks, [&](unsigned, std::size_t phase, std::size_t task) {
-    if (phase == 0) {
-      hand_out(state, task);
-    } else {
-      fill_cells(state, task);
-    }
-  });
 }
 
 void CellGrid::follow_storage() {
-  for (std::uint32_t n = 0; n < particles_; ++n) {
-    entries_[n].place = n;
-    if (parts_ > 1) handed_out_[n] = {entries_[n].id, n, n};
-    cell_or_number_[n] = n;
+  for (std::uint32_t n = 0; n < particles_; ++n) entries_[n].place = number_[n] = n;
+}
+
+void CellGrid::assign(const State& state, std::size_t share, std::size_t shares) {
+  const Eigen::Array3d scale = count_.cast<double>().array() / lengths_.array();
+  const std::size_t begin = particles_ * share / shares, end = particles_ * (share + 1) / shares;
+  for (std::size_t i = begin; i < end; ++i) {
+    const Eigen::Array3i cell = (state.position[i].array() * scale).cast<int>();
+    // Rounding may lead out of the last cell.
+    const Eigen::Array3i inside = cell.min(count_.array() - 1);
+    cell_[i] = static_cast<std::uint32_t>(index(inside[0], inside[1], inside[2]));
   }
 }
 
-void CellGrid::cut_parts(std::size_t parts) {
-  parts_ = parts;
-  part_of_cell_.resize(next_.size());
-  for (std::size_t part = 0; part < parts; ++part) {
-    std::fill(part_of_cell_.begin() + static_cast<std::ptrdiff_t>(part_begin(part)),
-              part_of_cell_.begin() + static_cast<std::ptrdiff_t>(part_begin(part + 1)), part);
-  }
-}
-
-void CellGrid::hand_out(const State& state, std::size_t share) {
-  const std::size_t first = share_begin(share), last = share_begin(share + 1);
-  assign(state, first, last);
-  if (parts_ == 1) return;
-  // Counted in memory of its own: threads that count side by side hold each other up.
-  std::vector<std::uint32_t> end(parts_ + 32);
-  for (std::size_t i = first; i < last; ++i) ++end[part_of(cell_or_number_[i])];
-  auto before = static_cast<std::uint32_t>(first);
-  for (std::size_t part = 0; part < parts_; ++part) before += std::exchange(end[part], before);
-  for (std::size_t i = first; i < last; ++i) {
-    handed_out_[end[part_of(cell_or_number_[i])]++] = {state.id[i], static_cast<std::uint32_t>(i),
-                                                       cell_or_number_[i]};
-  }
-  std::copy_n(end.begin(), parts_, &part_end_[share * parts_]);
-}
-
-std::size_t CellGrid::part_size(std::size_t share, std::size_t part) const {
-  const std::uint32_t* const end = &part_end_[share * parts_];
-  return end[part] - (part > 0 ? end[part - 1] : share_begin(share));
-}
-
-template <class Visit>
-void CellGrid::for_each_of_part(const State& state, std::size_t part, Visit&& visit) const {
-  if (parts_ == 1) {
-    for (std::uint32_t i = 0; i < state.size(); ++i) visit(i, state.id[i], cell_or_number_[i]);
-    return;
-  }
-  for (std::size_t share = 0; share < parts_; ++share) {
-    const std::uint32_t end = part_end_[share * parts_ + part];
-    for (auto n = end - static_cast<std::uint32_t>(part_size(share, part)); n < end; ++n) {
-      visit(n, handed_out_[n].id, handed_out_[n].cell_or_number);
-    }
-  }
-}
-
-void CellGrid::fill_cells(const State& state, std::size_t part) {
-  const std::size_t first = part_begin(part), last = part_begin(part + 1);
+// Wherever they are stored: no two parts write side by side.
+std::pair<std::size_t, std::size_t> CellGrid::fill(const State& state, std::size_t part,
+                                                   std::size_t parts) {
+  const std::size_t first = next_.size() * part / parts, last = next_.size() * (part + 1) / parts;
+  thread_local std::vector<std::uint32_t> places;
   std::uint32_t before = 0;
-  for (std::size_t share = 0; parts_ > 1 && share < parts_; ++share) {
-    for (std::size_t n = 0; n < part; ++n) {
-      before += static_cast<std::uint32_t>(part_size(share, n));
-    }
-  }
-  const std::uint32_t from = before;
+  const std::size_t count = find_places(cell_, particles_, static_cast<std::uint32_t>(first),
+                                        static_cast<std::uint32_t>(last), places, before);
   std::fill_n(next_.begin() + static_cast<std::ptrdiff_t>(first), last - first, 0);
-  for_each_of_part(state, part, [&](auto, auto, auto cell) { ++next_[cell]; });
+  for (std::size_t n = 0; n < count; ++n) ++next_[cell_[places[n]]];
+  const std::uint32_t from = before;
   for (std::size_t c = first; c < last; ++c) {
     begin_[c] = before;
     before += std::exchange(next_[c], before);
   }
-  for_each_of_part(state, part, [&](std::uint32_t n, std::uint32_t id, std::uint32_t cell) {
-    entries_[next_[cell]++] = {n, id};
-  });
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::uint32_t place = places[n];
+    entries_[next_[cell_[place]]++] = {place, state.id[place]};
+  }
   const auto by_id = [](const Entry& a, const Entry& b) { return a.id < b.id; };
   for (std::size_t c = first; c < last; ++c) {
     const auto begin = entries_.begin() + begin_[c], end = entries_.begin() + next_[c];
     if (!std::is_sorted(begin, end, by_id)) std::sort(begin, end, by_id);
   }
   gather(state, from, before);
-}
-
-void CellGrid::assign(const State& state, std::size_t begin, std::size_t end) {
-  const Eigen::Array3d scale = count_.cast<double>().array() / lengths_.array();
-  for (std::size_t i = begin; i < end; ++i) {
-    const Eigen::Array3i cell = (state.position[i].array() * scale).cast<int>();
-    // Rounding may lead out of the last cell.
-    const Eigen::Array3i inside = cell.min(count_.array() - 1);
-    cell_or_number_[i] = static_cast<std::uint32_t>(index(inside[0], inside[1], inside[2]));
-  }
+  return {from, before};
 }
 
 void CellGrid::gather(const State& state, std::size_t begin, std::size_t end) {
   for (std::size_t n = begin; n < end; ++n) {
-    std::uint32_t& place = entries_[n].place;  // at first where it has been handed out
-    const auto number = static_cast<std::uint32_t>(n);
-    if (parts_ > 1) {
-      HandedOut& from = handed_out_[place];
-      place = from.place;
-      from.cell_or_number = number;
-    } else {
-      cell_or_number_[place] = number;
-    }
+    const std::uint32_t place = entries_[n].place;
+    number_[place] = static_cast<std::uint32_t>(n);
     if (!species_.empty()) species_[n] = state.species[place];
     const Vector& position = state.position[place];
     position_[n] = {position[0], position[1], position[2], 0};

@@ -2,10 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "model/state.hpp"
-#include "model/threads.hpp"
 
 namespace driftless {
 
@@ -22,7 +22,9 @@ struct alignas(32) Quadruple {
 
 /// A box cut into cells of at least the range of the interaction, and its particles in their order:
 /// cell after cell, by ids within a cell. A box of less than four ranges along every side is one
-/// cell, whose particles are in the order of ids.
+/// cell, whose particles are in the order of ids. The cells are cut into tiles in turn, the work of
+/// one thread at a time: two tiles are of one colour if they stand at places alike, even or odd,
+/// along every axis, and share no particle then, neighbours included.
 class CellGrid {
  public:
   /// Throws std::invalid_argument if the box is shorter than twice the range.
@@ -36,18 +38,26 @@ class CellGrid {
   const Box& box() const { return box_; }
   /// The box's sides, longer by the range where walls stand: images are then never near.
   const Vector& lengths() const { return lengths_; }
-  /// Particles of cell c are begin(c) to begin(c + 1), x fastest.
+  /// How many tiles along each axis: one, or an even number. Tile t begins with cell_of(axis, t).
+  const Eigen::Vector3i& tiles() const { return tiles_; }
+  int cell_of(int axis, int tile) const { return tile * count_[axis] / tiles_[axis]; }
+  /// Particles of cell c are begin(c) to begin(c + 1); along x cells follow each other.
   std::uint32_t begin(std::size_t cell) const { return begin_[cell]; }
   std::size_t index(int x, int y, int z) const {
-    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(count_[1]) +
-            static_cast<std::size_t>(y)) *
-               static_cast<std::size_t>(count_[0]) +
-           static_cast<std::size_t>(x);
+    return row_[row(y, z)] + static_cast<std::size_t>(x);
   }
   std::size_t particles() const { return particles_; }
+  /// Whether what is kept for each particle stays in a core's cache, in any order.
+  bool few() const { return particles_ < 10000; }
 
   /// Sorts the particles anew.
-  void sort(const State& state, const Threads& threads);
+  void sort(const State& state);
+  /// The same in steps: begin_sort(), then assign() for every share of the storage, then fill() for
+  /// every part of the cells; shares, and parts, may be treated at once. fill() returns which
+  /// particles in the order of cells it has put there, from first to below second.
+  void begin_sort(const State& state);
+  void assign(const State& state, std::size_t share, std::size_t shares);
+  std::pair<std::size_t, std::size_t> fill(const State& state, std::size_t part, std::size_t parts);
   /// Takes the storage as having been brought into the order of cells.
   void follow_storage();
 
@@ -61,60 +71,32 @@ class CellGrid {
   std::uint8_t species(std::size_t n) const { return species_.empty() ? 0 : species_[n]; }
   const std::vector<Quadruple>& position() const { return position_; }
   const std::array<std::vector<float>, 3>& rough_position() const { return rough_; }
-  /// The way back to storage: visit(place, number in the order of cells) for a share of the places,
-  /// one thread's. Numbers jump, places less so: reading here and there costs less than writing.
-  std::size_t shares() const { return parts_; }
-  template <class Visit>
-  void for_each_of_share(std::size_t share, Visit&& visit) const;
+  /// The way back: the number in the order of cells of what lies at a place in storage.
+  std::uint32_t number(std::size_t place) const { return number_[place]; }
   double rough_margin() const { return 4e-7 * lengths_.maxCoeff(); }
 
  private:
-  struct HandedOut {
-    std::uint32_t id, place, cell_or_number;
-  };
-
   void cut(double range);
-  void assign(const State& state, std::size_t begin, std::size_t end);
+  void cut_tiles();
+  void order_rows();
+  std::size_t row(int y, int z) const {
+    return static_cast<std::size_t>(z) * static_cast<std::size_t>(count_[1]) +
+           static_cast<std::size_t>(y);
+  }
   void gather(const State& state, std::size_t begin, std::size_t end);
-  void cut_parts(std::size_t parts);
-  /// Puts a share of the storage in the order of parts of the cells.
-  void hand_out(const State& state, std::size_t share);
-  /// Sorts the particles of a part of the cells.
-  void fill_cells(const State& state, std::size_t part);
-  template <class Visit>
-  void for_each_of_part(const State& state, std::size_t part, Visit&& visit) const;
-  std::size_t share_begin(std::size_t share) const { return particles_ * share / parts_; }
-  std::size_t part_begin(std::size_t part) const { return next_.size() * part / parts_; }
-  std::size_t part_of(std::uint32_t cell) const { return part_of_cell_[cell]; }
-  std::size_t part_size(std::size_t share, std::size_t part) const;
 
   Box box_;
   Vector lengths_;
   std::size_t particles_;
   bool single_ = false;
-  Eigen::Vector3i count_;
+  Eigen::Vector3i count_, tiles_;
+  std::vector<std::size_t> row_;  ///< first cell of each row along x
   std::vector<std::uint32_t> begin_, next_;
-  std::size_t parts_ = 0;  ///< of storage and of cells, one for each thread
-  std::vector<std::uint16_t> part_of_cell_;
-  /// Each share of the storage in the order of parts; with one part storage stays as it is.
-  std::vector<HandedOut> handed_out_;
-  std::vector<std::uint32_t> part_end_;        ///< of each share's parts there
-  std::vector<std::uint32_t> cell_or_number_;  ///< of each place in storage
+  std::vector<std::uint32_t> cell_, number_;  ///< of each place in storage
   std::vector<Entry> entries_;
   std::vector<std::uint8_t> species_;  ///< empty: all 0
   std::vector<Quadruple> position_;
   std::array<std::vector<float>, 3> rough_;
 };
-
-template <class Visit>
-void CellGrid::for_each_of_share(std::size_t share, Visit&& visit) const {
-  for (std::size_t n = share_begin(share); n < share_begin(share + 1); ++n) {
-    if (parts_ > 1) {
-      visit(handed_out_[n].place, handed_out_[n].cell_or_number);
-    } else {
-      visit(n, cell_or_number_[n]);
-    }
-  }
-}
 
 }  // namespace driftless

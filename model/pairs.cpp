@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <numeric>
 
 #include "model/lanes.hpp"
+#include "model/picked_lanes.hpp"
 
 namespace driftless {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::ScalableTag<float>;
-using Indices = hn::RebindToUnsigned<Floats>;
 
 /// Particles side by side in the order of cells that may be near those of a cell, and the shift to
 /// the image at which the cell sees them.
@@ -69,44 +68,6 @@ class Neighbours {
   std::size_t count_ = 0;
 };
 
-/// 0, 1, 2, ...: loaded, as Highway's Iota is put together number by number at every use.
-constexpr auto counting = [] {
-  std::array<std::uint32_t, hn::MaxLanes(Indices())> numbers{};
-  for (std::uint32_t n = 0; n < numbers.size(); ++n) numbers[n] = n;
-  return numbers;
-}();
-
-/// The numbers of the bits that are set, for every eight bits: what Compress takes from a table
-/// where processors have no instruction for it. Some compilers copy Highway's own at every use.
-constexpr auto bits_set = [] {
-  std::array<std::array<std::uint8_t, 8>, 256> numbers{};
-  for (std::size_t bits = 0; bits < 256; ++bits) {
-    std::size_t count = 0;
-    for (std::uint8_t n = 0; n < 8; ++n) {
-      if (bits >> n & 1) numbers[bits][count++] = n;
-    }
-  }
-  return numbers;
-}();
-
-/// Stores those of `numbers` that are near, and a rest up to a whole vector. Returns how many.
-HWY_INLINE std::size_t store_near(hn::Vec<Indices> numbers, hn::Mask<Indices> near,
-                                  std::uint32_t* to) {
-  const Indices indices;
-  // Compressed in the register: storing a part of a vector takes longer than all of it.
-  if constexpr (hn::MaxLanes(Indices()) <= 8) {
-    std::uint8_t bits[8];
-    hn::StoreMaskBits(indices, near, bits);
-    const hn::Rebind<std::uint8_t, Indices> bytes;
-    const auto lanes = hn::PromoteTo(indices, hn::LoadU(bytes, bits_set[bits[0]].data()));
-    hn::StoreU(hn::TableLookupLanes(numbers, hn::IndicesFromVec(indices, lanes)), indices, to);
-    return static_cast<std::size_t>(std::popcount(bits[0]));
-  } else {
-    hn::StoreU(hn::Compress(numbers, near), indices, to);
-    return hn::CountTrue(indices, near);
-  }
-}
-
 /// As many particles side by side as there are lanes of single precision.
 struct Candidates {
   std::array<hn::Vec<Floats>, 3> position;
@@ -114,9 +75,7 @@ struct Candidates {
   hn::Mask<Floats> counted;
 
   Candidates(const CellGrid& cells, std::uint32_t first, std::uint32_t end)
-
-      : number(hn::Add(hn::LoadU(Indices(), counting.data()), hn::Set(Indices(), first))),
-        counted(hn::FirstN(Floats(), end - first)) {
+      : number(counting_from(first)), counted(hn::FirstN(Floats(), end - first)) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       position[axis] = hn::LoadU(Floats(), cells.rough_position()[axis].data() + first);
     }
@@ -166,7 +125,7 @@ HWY_INLINE void add_near(Writer& found, const Images& images, std::uint32_t i,
   const auto near =
       hn::RebindMask(indices, hn::And(hn::Lt(squared, hn::Set(floats, limit)), counted));
   hn::StoreU(hn::Set(indices, i), indices, found.i + found.size);
-  found.size += store_near(candidates.number, near, found.j + found.size);
+  found.size += store_picked(candidates.number, near, found.j + found.size);
 }
 
 template <bool wrap>
@@ -331,48 +290,40 @@ void PairIndices::pad(std::uint32_t of_i, std::uint32_t of_j) {
 
 PairBlocks::PairBlocks(const CellGrid& cells, double range, unsigned threads, std::size_t species)
     : range_(range), species_(species), single_(cells.single()) {
-  const Eigen::Vector3i count = cells.count();
-  // Few particles fit into the cache as they are, and columns have half as many colours, each a
-  // phase to wait for; many are taken tile by tile, a tile's particles staying in the cache.
-  const bool few = cells.particles() < 10000;
-  const int width = few ? 2 : 3;
-  Eigen::Vector3i tiles;
-  for (int axis = 0; axis < 3; ++axis) {
-    tiles[axis] = count[axis] < 4 ? 1 : 2 * std::max(1, count[axis] / (2 * width));
-  }
-  if (few) tiles[2] = 1;
+  const Eigen::Vector3i& tiles = cells.tiles();
   const auto all = static_cast<std::size_t>(tiles.prod());
-  const std::size_t a_tile = std::max<std::size_t>(1, cells.particles() / all);
   for (int colour = 0; colour < 8; ++colour) {
     const Eigen::Vector3i parity(colour & 1, colour >> 1 & 1, colour >> 2 & 1);
     std::vector<PairBlock::Tile> alike;
     for (int z = parity[2]; z < tiles[2]; z += 2) {
       for (int y = parity[1]; y < tiles[1]; y += 2) {
         for (int x = parity[0]; x < tiles[0]; x += 2) {
-          const Eigen::Array3i at(x, y, z);
-          alike.push_back({(at * count.array() / tiles.array()).matrix(),
-                           ((at + 1) * count.array() / tiles.array()).matrix()});
+          alike.push_back(
+              {{cells.cell_of(0, x), cells.cell_of(1, y), cells.cell_of(2, z)},
+               {cells.cell_of(0, x + 1), cells.cell_of(1, y + 1), cells.cell_of(2, z + 1)}});
         }
       }
     }
     if (alike.empty()) continue;
-    // Enough blocks for threads to share them evenly.
-    const std::size_t for_all = threads > 1 ? alike.size() / (4 * threads) : alike.size();
-    const std::size_t for_cache = particles_a_block / a_tile;
-    add_blocks(alike, std::max<std::size_t>(1, std::min(for_all, for_cache)));
+    add_blocks(alike, threads, cells.particles() * alike.size() / all);
   }
   order_search();
 }
 
-void PairBlocks::add_blocks(const std::vector<PairBlock::Tile>& tiles, std::size_t per_block) {
+// So many that a block's arrays stay in the cache, and that threads have a few each, all alike.
+void PairBlocks::add_blocks(const std::vector<PairBlock::Tile>& tiles, unsigned threads,
+                            std::size_t particles) {
+  const std::size_t for_cache = particles / particles_a_block + 1;
+  const std::size_t a_thread =
+      threads > 1 ? std::max<std::size_t>(4, for_cache / threads) : for_cache;
+  const std::size_t blocks = std::min(tiles.size(), threads * a_thread);
   first_.push_back(blocks_.size());
-  colours_.push_back((tiles.size() + per_block - 1) / per_block);
-  for (std::size_t n = 0; n < tiles.size(); n += per_block) {
-    PairBlock& block = blocks_.emplace_back();
-    const auto begin = tiles.begin() + static_cast<std::ptrdiff_t>(n);
-    block.tiles.assign(begin,
-                       begin + static_cast<std::ptrdiff_t>(std::min(per_block, tiles.size() - n)));
-  }
+  colours_.push_back(blocks);
+  const auto tile = [&](std::size_t block) {
+    return tiles.begin() + static_cast<std::ptrdiff_t>(tiles.size() * block / blocks);
+  };
+  for (std::size_t n = 0; n < blocks; ++n)
+    blocks_.emplace_back().tiles.assign(tile(n), tile(n + 1));
 }
 
 // So that a thread finds the pairs of those blocks that it visits later, colour by colour.
@@ -390,27 +341,33 @@ void PairBlocks::order_search() {
                    [&](std::size_t a, std::size_t b) { return place[a] < place[b]; });
 }
 
-void PairBlocks::find(const CellGrid& cells, const Threads& threads) {
-  const std::size_t blocks[] = {blocks_.size()};
-  threads.phases(blocks, [&](unsigned, std::size_t, std::size_t n) {
-    PairBlock& block = blocks_[search_order_[n]];
-    block.grouped = false;
-    block.kept.clear();
-    // Found in a place with room for all candidates, kept in one as large as what is found.
-    thread_local PairIndices found;
-    search_block(found, block, cells);
-    pad(found);
-    block.found.resize(found.size);
-    if (cells.single()) {
-      std::copy_n(found.i.begin(), found.size, block.found.i.begin());
-      std::copy_n(found.j.begin(), found.size, block.found.j.begin());
-    } else {
-      order_by_ids(found, block.found, cells);
-    }
-    pad(block.found);
-    sort_by_kind(block, cells);
-  });
+void PairBlocks::begin_find(const CellGrid& cells) {
+  used_.resize(cells.few() ? 0 : cells.particles());
   sorted_by_ids_ = false;
+}
+
+void PairBlocks::find(const CellGrid& cells) {
+  begin_find(cells);
+  for (std::size_t n = 0; n < searches(); ++n) find_some(cells, n);
+}
+
+void PairBlocks::find_some(const CellGrid& cells, std::size_t search) {
+  PairBlock& block = blocks_[search_order_[search]];
+  block.grouped = false;
+  block.kept.clear();
+  // Found in a place with room for all candidates, kept in one as large as what is found.
+  thread_local PairIndices found;
+  search_block(found, block, cells);
+  pad(found);
+  block.found.resize(found.size);
+  if (cells.single()) {
+    std::copy_n(found.i.begin(), found.size, block.found.i.begin());
+    std::copy_n(found.j.begin(), found.size, block.found.j.begin());
+  } else {
+    order_by_ids(found, block.found, cells);
+  }
+  pad(block.found);
+  sort_by_kind(block, cells);
 }
 
 void PairBlocks::search_block(PairIndices& found, const PairBlock& block,
@@ -471,9 +428,14 @@ GroupedPairs PairBlocks::group(PairBlock& block, const CellGrid& cells) {
   // What was found has been sorted by kind.
   if (single_ && species_ > 1) return by_ids(cells);
   if (!block.grouped) {
+    // Threads hold each other up where they write side by side, as they do wherever tiles of few
+    // particles meet.
+    thread_local std::vector<std::uint64_t> own;
+    if (cells.few()) own.resize(cells.particles());
+    auto& used = cells.few() ? own : used_;
     thread_local std::vector<std::uint32_t> group;
-    auto groups = single_ ? groups_in_order(block.found, used_, group)
-                          : groups_of_few(block.found, used_, group);
+    auto groups = single_ ? groups_in_order(block.found, used, group)
+                          : groups_of_few(block.found, used, group);
     split_by_kind(block.found, cells, group, groups);
     sort_by_group(group, groups, block.groups);
     block.grouped = true;
@@ -484,7 +446,6 @@ GroupedPairs PairBlocks::group(PairBlock& block, const CellGrid& cells) {
 GroupedPairs PairBlocks::by_ids(const CellGrid& cells) {
   if (sorted_by_ids_) return {by_ids_, groups_by_ids_};
   sorted_by_ids_ = true;
-  prepare_groups(cells);
   struct Pair {
     std::uint64_t ids;
     std::uint32_t i, j;
@@ -500,17 +461,17 @@ GroupedPairs PairBlocks::by_ids(const CellGrid& cells) {
   by_ids_.size = 0;
   by_ids_.reserve(all.size());
   for (const auto& pair : all) by_ids_.append(pair.i, pair.j);
+  std::vector<std::uint64_t> used(cells.particles());
   std::vector<std::uint32_t> group;
-  auto groups = groups_in_order(by_ids_, used_, group);
+  auto groups = groups_in_order(by_ids_, used, group);
   split_by_kind(by_ids_, cells, group, groups);
   sort_by_group(group, groups, groups_by_ids_);
   return {by_ids_, groups_by_ids_};
 }
 
 void PairSearch::find(const State& state, FunctionReference<void(const Found&)> visit) {
-  const Threads one;
-  cells_.sort(state, one);
-  blocks_.find(cells_, one);
+  cells_.sort(state);
+  blocks_.find(cells_);
   for (const auto& block : blocks_.all()) {
     for (std::size_t n = 0; n < block.found.size; ++n) {
       const auto i = cells_.place(block.found.i[n]), j = cells_.place(block.found.j[n]);

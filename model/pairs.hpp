@@ -65,17 +65,21 @@ struct PairBlock {
   unsigned kept_stage = 0;
 };
 
-/// All pairs within a range, in blocks. The cells are cut into tiles, coloured so that two tiles of
-/// one colour share no particle, neighbours included: blocks of a colour may be treated at once,
-/// and what comes out does not depend on how tiles are put together to blocks. A single cell is one
-/// block, its pairs in the order of ids.
+/// All pairs within a range, in blocks of tiles of one colour: blocks of a colour may be treated at
+/// once, and what comes out does not depend on how tiles are put together to blocks. A single cell
+/// is one block, its pairs in the order of ids.
 class PairBlocks {
  public:
   PairBlocks(const CellGrid& cells, double range, unsigned threads, std::size_t species = 1);
 
   /// Finds the pairs anew. Single precision decides: a pair beyond the range by up to the cells'
   /// margin may be among them.
-  void find(const CellGrid& cells, const Threads& threads);
+  void find(const CellGrid& cells);
+  /// The same in steps: begin_find(), then find_some() for each number below searches(), which may
+  /// be treated at once; their order is such that who finds pairs visits them later.
+  void begin_find(const CellGrid& cells);
+  std::size_t searches() const { return blocks_.size(); }
+  void find_some(const CellGrid& cells, std::size_t search);
 
   std::size_t pairs() const;
   /// How many blocks each colour has.
@@ -83,8 +87,6 @@ class PairBlocks {
   PairBlock& block(std::size_t colour, std::size_t n) { return blocks_[first_[colour] + n]; }
   std::vector<PairBlock>& all() { return blocks_; }
 
-  /// Makes what group() needs; before the first after find().
-  void prepare_groups(const CellGrid& cells) { used_.resize(cells.particles()); }
   /// Puts a block's pairs into groups, once: each pair into the first group that has neither of its
   /// particles; in a single cell so that the order is that of ids. Blocks of one colour at once.
   GroupedPairs group(PairBlock& block, const CellGrid& cells);
@@ -93,7 +95,8 @@ class PairBlocks {
   GroupedPairs by_ids(const CellGrid& cells);
 
  private:
-  void add_blocks(const std::vector<PairBlock::Tile>& tiles, std::size_t per_block);
+  void add_blocks(const std::vector<PairBlock::Tile>& tiles, unsigned threads,
+                  std::size_t particles);
   void order_search();
 
   void search_block(PairIndices& found, const PairBlock& block, const CellGrid& cells) const;
@@ -108,7 +111,7 @@ class PairBlocks {
   std::vector<PairBlock> blocks_;
   std::vector<std::size_t> colours_, first_;
   std::vector<std::size_t> search_order_;  ///< of the blocks
-  std::vector<std::uint64_t> used_;        ///< groups of each particle, a bit each
+  std::vector<std::uint64_t> used_;        ///< groups of each particle, a bit each, of many
   PairIndices by_ids_;
   PairGroups groups_by_ids_;
   bool sorted_by_ids_ = false;

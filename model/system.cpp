@@ -10,9 +10,6 @@ namespace {
 
 /// So many that what the passes read and write stays in the cache.
 constexpr std::size_t pairs_a_chunk = 512;
-/// In a system of fewer particles several rounds share the geometry of the pairs, which takes 290
-/// bytes a particle at density 3; in larger ones it is computed anew.
-constexpr std::size_t most_with_geometry = 10000;
 /// The other side of a contact is at rest, and no exchange exhausts it.
 constexpr Quadruple boundary_motion{0, 0, 0, 1e300};
 
@@ -106,12 +103,34 @@ Places System::order_storage() {
 
 void System::find_pairs() {
   if (summing_) forget_sums();
-  if (pairs_version_ == positions_version_) return;
+  if (has_pairs()) return;
   const PassClock clock(passes_[0].part(&PassSeconds::search));
-  cells_.sort(state_, threads_);
-  pairs_.find(cells_, threads_);
-  contacts_.find(fluid_, cells_, threads_);
+  const auto tasks = begin_search();
+  threads_.phases(tasks, [&](unsigned, std::size_t phase, std::size_t task) {
+    search(phase, task, nothing_to_prepare);
+  });
   pairs_version_ = positions_version_;
+}
+
+std::vector<std::size_t> System::begin_search() {
+  cells_.begin_sort(state_);
+  pairs_.begin_find(cells_);
+  contacts_.begin_find(fluid_, box_);
+  return {threads_.count(), threads_.count(), pairs_.searches() + contacts_.searches()};
+}
+
+void System::search(std::size_t phase, std::size_t task,
+                    FunctionReference<void(std::size_t, std::size_t)> prepare) {
+  if (phase == 0) {
+    cells_.assign(state_, task, threads_.count());
+  } else if (phase == 1) {
+    const auto [begin, end] = cells_.fill(state_, task, threads_.count());
+    prepare(begin, end);
+  } else if (task < pairs_.searches()) {
+    pairs_.find_some(cells_, task);
+  } else {
+    contacts_.find_some(cells_, task - pairs_.searches());
+  }
 }
 
 void System::make_room(std::vector<Quadruple>& gathered) const {
@@ -148,7 +167,8 @@ bool System::is_kept(Stage stage) {
   });
 }
 
-bool System::keeps_geometry() const { return size() < most_with_geometry; }
+// It takes 290 bytes a particle at density 3; in larger systems it is computed anew in each round.
+bool System::keeps_geometry() const { return cells_.few(); }
 
 void System::work_in_kept(PairPass& pass, PairBlock& block, std::size_t first, Stage stage) const {
   const std::size_t apart = block.found.size + 2 * Lanes::count();
@@ -160,7 +180,8 @@ void System::work_in_kept(PairPass& pass, PairBlock& block, std::size_t first, S
 
 void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total, Stage stage,
                         Rounds rounds) {
-  find_pairs();
+  const bool again = rounds == Rounds::several;
+  if (again) find_pairs();  // what is kept is of these
   make_room(motion_);
   if (trial) make_room(trial_);
   const auto gather = [&](std::size_t begin, std::size_t end) {
@@ -168,7 +189,6 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
     if (trial) gather_motion(*trial, trial_, begin, end);
   };
   const PassParticles particles{motion_.data(), trial_.data(), nullptr, nullptr};
-  const bool again = rounds == Rounds::several;
   const bool kept = again && is_kept(stage);
   const auto visit = [&](PairPass& pass, PairBlock& block, std::size_t first, std::size_t count) {
     if (again) work_in_kept(pass, block, first, stage);
@@ -196,20 +216,23 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
 void System::sum(Exchange& total, PairAnswer answer,
                  FunctionReference<void(std::size_t, std::size_t)> prepare,
                  const ContactAnswer* at_boundary) {
+  if (measured_ || summing_) find_pairs();
+  const bool search_first = !has_pairs();
+  // The search, or particles alone; pairs colour by colour, contacts, and particles again.
+  std::vector<std::size_t> tasks(1, threads_.count());
+  if (search_first) tasks = begin_search();
   summing_ = true;
   total.momentum.resize(size());
   total.energy.resize(size());
   const auto colours = pairs_.colours();
   const auto contacts = at_boundary ? contacts_.phases() : std::span<const std::size_t>();
-  const std::size_t first_contact = 1 + colours.size(), last = first_contact + contacts.size();
-  // Particles, pairs colour by colour, contacts, and particles again.
-  std::vector<std::size_t> tasks(1, threads_.count());
+  const std::size_t first_colour = tasks.size(), first_contact = first_colour + colours.size(),
+                    last = first_contact + contacts.size();
   tasks.insert(tasks.end(), colours.begin(), colours.end());
   tasks.insert(tasks.end(), contacts.begin(), contacts.end());
-  tasks.push_back(cells_.shares());
+  tasks.push_back(threads_.count());
   std::fill(sums_.begin() + static_cast<std::ptrdiff_t>(size()), sums_.end(), Quadruple{});
-  const auto start = [&](std::size_t task) {
-    const std::size_t begin = size() * task / tasks[0], end = size() * (task + 1) / tasks[0];
+  const auto start = [&](std::size_t begin, std::size_t end) {
     std::fill_n(sums_.begin() + static_cast<std::ptrdiff_t>(begin), end - begin, Quadruple{});
     prepare(begin, end);
   };
@@ -223,16 +246,21 @@ void System::sum(Exchange& total, PairAnswer answer,
   };
   threads_.phases(tasks, [&](unsigned thread, std::size_t phase, std::size_t task) {
     PairPass& pass = passes_[thread];
-    if (phase == 0) {
-      start(task);
+    const std::size_t begin = size() * task / threads_.count(),
+                      end = size() * (task + 1) / threads_.count();
+    if (phase < first_colour && search_first) {
+      search(phase, task, start);
+    } else if (phase < first_colour) {
+      start(begin, end);
     } else if (phase < first_contact) {
-      for_each_run(pass, pairs_.block(phase - 1, task), visit);
+      for_each_run(pass, pairs_.block(phase - first_colour, task), visit);
     } else if (phase < last) {
       for_each_contact_run(pass, contacts_.group(phase - first_contact, task), visit_contacts);
     } else {
-      scatter_sums(total, task);
+      scatter_sums(total, begin, end);
     }
   });
+  pairs_version_ = positions_version_;
   total.surroundings = {};
   for (std::size_t number = 0; !contacts.empty() && number < BoundaryContacts::numbers; ++number) {
     const auto& received = sums_[size() + number];
@@ -242,11 +270,13 @@ void System::sum(Exchange& total, PairAnswer answer,
   summing_ = false;
 }
 
-void System::scatter_sums(Exchange& total, std::size_t share) const {
-  cells_.for_each_of_share(share, [&](std::size_t i, std::size_t n) {
-    total.momentum[i] = Vector(sums_[n].x, sums_[n].y, sums_[n].z);
-    total.energy[i] = sums_[n].energy;
-  });
+// Numbers jump, places less so: reading here and there costs less than writing.
+void System::scatter_sums(Exchange& total, std::size_t begin, std::size_t end) const {
+  for (std::size_t i = begin; i < end; ++i) {
+    const Quadruple& sum = sums_[cells_.number(i)];
+    total.momentum[i] = Vector(sum.x, sum.y, sum.z);
+    total.energy[i] = sum.energy;
+  }
 }
 
 void System::for_each_run(PairPass& pass, PairBlock& block, PairAnswer visit) {
@@ -363,88 +393,89 @@ void System::sweep_chunk(PairPass& pass, const GroupedPairs& grouped, std::size_
   }
 }
 
-void System::sweep_pairs(const PassParticles& particles, const PairKernel& kernel, const Sweep& how,
-                         std::vector<std::vector<std::uint32_t>>& failed) {
-  if (how.sequence == SweepSequence::by_ids) {
-    sweep_groups(passes_[0], pairs_.by_ids(cells_), particles, kernel, how, failed[0]);
-    return;
-  }
-  pairs_.prepare_groups(cells_);
-  const auto colours = pairs_.colours();
-  std::vector<std::size_t> tasks(colours.begin(), colours.end());
-  const bool reverse = how.order == SweepOrder::reverse;
-  if (reverse) std::reverse(tasks.begin(), tasks.end());
-  threads_.phases(tasks, [&](unsigned thread, std::size_t phase, std::size_t task) {
-    PairBlock& block = pairs_.block(reverse ? tasks.size() - 1 - phase : phase, task);
-    const auto grouped = [&] {
-      const PassClock clock(passes_[thread].part(&PassSeconds::search));
-      return pairs_.group(block, cells_);
-    };
-    sweep_groups(passes_[thread], grouped(), particles, kernel, how, failed[thread]);
+void System::sweep_contacts(PairPass& pass, const BoundaryContacts::Group& group,
+                            const PassParticles& particles, const PairKernel& kernel,
+                            const Sweep& how, std::vector<std::uint32_t>& failed) {
+  for_each_contact_run(pass, group, [&](PairPass&, std::size_t boundary, std::size_t count) {
+    const auto id = BoundaryContacts::id(boundary);
+    pass.draw_contact_normals(noise_, how.stage, id);
+    if (how.uniforms) {
+      pass.draw_contact_uniforms(noise_, how.stage, id);
+    } else {
+      pass.draw_no_uniforms();
+    }
+    pass.motion(particles, 0, count);
+    pass.run(kernel, 0, count);
+    if (pass.apply_contacts(particles, 0, count)) return;
+    if (how.energies == SweepEnergies::frozen) return;
+    note_failed(pass, 0, count, failed);
   });
 }
 
-void System::sweep_contacts(const PassParticles& particles, const PairKernel& kernel,
-                            const Sweep& how, std::vector<std::vector<std::uint32_t>>& failed) {
-  if (!contacts_.any()) return;
-  const auto phases = contacts_.phases();
-  std::vector<std::size_t> tasks(phases.begin(), phases.end());
-  const bool reverse = how.order == SweepOrder::reverse;
-  if (reverse) std::reverse(tasks.begin(), tasks.end());
-  received_.assign(BoundaryContacts::numbers, {});
-  threads_.phases(tasks, [&](unsigned thread, std::size_t phase, std::size_t task) {
-    const auto& group = contacts_.group(reverse ? tasks.size() - 1 - phase : phase, task);
-    for_each_contact_run(passes_[thread], group,
-                         [&](PairPass& pass, std::size_t boundary, std::size_t count) {
-                           const auto id = BoundaryContacts::id(boundary);
-                           pass.draw_contact_normals(noise_, how.stage, id);
-                           if (how.uniforms) {
-                             pass.draw_contact_uniforms(noise_, how.stage, id);
-                           } else {
-                             pass.draw_no_uniforms();
-                           }
-                           pass.motion(particles, 0, count);
-                           pass.run(kernel, 0, count);
-                           if (pass.apply_contacts(particles, 0, count)) return;
-                           if (how.energies == SweepEnergies::frozen) return;
-                           note_failed(pass, 0, count, failed[thread]);
-                         });
-  });
-  for (std::size_t number = 0; number < BoundaryContacts::numbers; ++number) {
-    const auto& sum = received_[number];
-    state_.surroundings[BoundaryContacts::boundary(number)] +=
-        {Vector(sum.x, sum.y, sum.z), sum.energy};
+bool System::take_motion(std::size_t begin, std::size_t end) {
+  bool sound = true;
+  for (std::size_t i = begin; i < end; ++i) {
+    const Quadruple& motion = motion_[cells_.number(i)];
+    state_.velocity[i] = Vector(motion.x, motion.y, motion.z);
+    if (!fluid_.isothermal()) state_.internal_energy[i] = motion.energy;
+    sound = sound & is_sound(i);
   }
+  return sound;
 }
 
 void System::sweep(const PairKernel& kernel, const Sweep& how) {
   find_pairs();
   make_room(motion_);
-  for_each_particle(
-      [&](std::size_t begin, std::size_t end) { gather_motion(state_, motion_, begin, end); });
-  received_.resize(BoundaryContacts::numbers);
+  received_.assign(BoundaryContacts::numbers, {});
   PassParticles particles{motion_.data(), nullptr, nullptr, motion_.data(), received_.data()};
-  if (how.energies == SweepEnergies::frozen) {
-    frozen_motion_ = motion_;
+  const bool frozen_energies = how.energies == SweepEnergies::frozen;
+  if (frozen_energies) {
+    make_room(frozen_motion_);
     particles.energy = frozen_motion_.data();
   }
+  const bool by_ids = how.sequence == SweepSequence::by_ids;
+  const std::size_t all_at_once[] = {1};
+  const auto colours = by_ids ? std::span<const std::size_t>(all_at_once) : pairs_.colours();
+  // Particles, pairs colour by colour and then contacts, or the other way round, and particles
+  // again.
+  std::vector<std::size_t> tasks(1, threads_.count());
+  tasks.insert(tasks.end(), colours.begin(), colours.end());
+  tasks.insert(tasks.end(), contacts_.phases().begin(), contacts_.phases().end());
+  const bool reverse = how.order == SweepOrder::reverse;
+  if (reverse) std::reverse(tasks.begin() + 1, tasks.end());
+  const std::size_t last = tasks.size();
+  tasks.push_back(threads_.count());
   std::vector<std::vector<std::uint32_t>> failed(threads_.count());
-  // The reverse of a sweep meets the walls first.
-  if (how.order == SweepOrder::reverse) sweep_contacts(particles, kernel, how, failed);
-  sweep_pairs(particles, kernel, how, failed);
-  if (how.order == SweepOrder::forward) sweep_contacts(particles, kernel, how, failed);
   std::atomic<bool> sound = true;
-  ++energies_version_;
-  const std::size_t shares[] = {cells_.shares()};
-  threads_.phases(shares, [&](unsigned, std::size_t, std::size_t share) {
-    bool all = true;
-    cells_.for_each_of_share(share, [&](std::size_t i, std::size_t n) {
-      state_.velocity[i] = Vector(motion_[n].x, motion_[n].y, motion_[n].z);
-      if (!fluid_.isothermal()) state_.internal_energy[i] = motion_[n].energy;
-      all = all & is_sound(i);
-    });
-    if (!all) sound = false;
+  threads_.phases(tasks, [&](unsigned thread, std::size_t phase, std::size_t task) {
+    PairPass& pass = passes_[thread];
+    const std::size_t begin = size() * task / threads_.count(),
+                      end = size() * (task + 1) / threads_.count();
+    const std::size_t place = reverse ? last - 1 - phase : phase - 1;  // in forward order
+    if (phase == 0) {
+      gather_motion(state_, motion_, begin, end);
+      if (frozen_energies) gather_motion(state_, frozen_motion_, begin, end);
+    } else if (phase == last) {
+      if (!take_motion(begin, end)) sound = false;
+    } else if (place >= colours.size()) {
+      sweep_contacts(pass, contacts_.group(place - colours.size(), task), particles, kernel, how,
+                     failed[thread]);
+    } else if (by_ids) {
+      sweep_groups(pass, pairs_.by_ids(cells_), particles, kernel, how, failed[thread]);
+    } else {
+      const auto grouped = [&] {
+        const PassClock clock(pass.part(&PassSeconds::search));
+        return pairs_.group(pairs_.block(place, task), cells_);
+      };
+      sweep_groups(pass, grouped(), particles, kernel, how, failed[thread]);
+    }
   });
+  ++energies_version_;
+  for (std::size_t number = 0; contacts_.any() && number < BoundaryContacts::numbers; ++number) {
+    const auto& sum = received_[number];
+    state_.surroundings[BoundaryContacts::boundary(number)] +=
+        {Vector(sum.x, sum.y, sum.z), sum.energy};
+  }
   count_visit(true, how.uniforms);
   for (std::size_t thread = 1; thread < failed.size(); ++thread) {
     failed[0].insert(failed[0].end(), failed[thread].begin(), failed[thread].end());
@@ -621,7 +652,6 @@ void System::renew_conservative() {
     conservative_version_ = positions_version_;
     return;
   }
-  find_pairs();
   const auto repulsion = [&](const auto& pair) {
     const PairLaw& law = *pair.law;
     const auto potential = law.potential(pair.r);

@@ -158,26 +158,33 @@ class System {
   void accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total, Stage stage,
                   Rounds rounds = Rounds::one);
   void sweep(const PairKernel& kernel, const Sweep& how);
-  void sweep_pairs(const PassParticles& particles, const PairKernel& kernel, const Sweep& how,
-                   std::vector<std::vector<std::uint32_t>>& failed);
   void sweep_groups(PairPass& pass, const GroupedPairs& grouped, const PassParticles& particles,
                     const PairKernel& kernel, const Sweep& how, std::vector<std::uint32_t>& failed);
   void sweep_chunk(PairPass& pass, const GroupedPairs& grouped, std::size_t first,
                    std::size_t count, const PassParticles& particles, const PairKernel& kernel,
                    const Sweep& how, std::vector<std::uint32_t>& failed);
-  void sweep_contacts(const PassParticles& particles, const PairKernel& kernel, const Sweep& how,
-                      std::vector<std::vector<std::uint32_t>>& failed);
+  void sweep_contacts(PairPass& pass, const BoundaryContacts::Group& group,
+                      const PassParticles& particles, const PairKernel& kernel, const Sweep& how,
+                      std::vector<std::uint32_t>& failed);
+  /// Hands particles the motion that a sweep has left; false if one of them is not sound.
+  bool take_motion(std::size_t begin, std::size_t end);
   void note_failed(const PairPass& pass, std::size_t from, std::size_t to,
                    std::vector<std::uint32_t>& failed) const;
   /// Makes cells, blocks and memory for as many particles and threads as there are.
   void cut_cells();
   void find_pairs();
+  bool has_pairs() const { return pairs_version_ == positions_version_; }
   static constexpr auto nothing_to_prepare = [](std::size_t, std::size_t) {};
+  /// The search for pairs and contacts: how many tasks each of its phases has, and one of them,
+  /// with prepare(begin, end) for parts of the particles as soon as the order of cells is known.
+  std::vector<std::size_t> begin_search();
+  void search(std::size_t phase, std::size_t task,
+              FunctionReference<void(std::size_t, std::size_t)> prepare);
   using PairAnswer = FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)>;
   using ContactAnswer = FunctionReference<void(PairPass&, std::size_t, std::size_t)>;
-  /// Sums what pairs exchange, per particle: answer(pass, block, first, count) has the pass find it
-  /// for a part of a block's pairs, after prepare(begin, end) for parts of the particles in the
-  /// order of cells.
+  /// Sums what pairs, found before if they are not known, exchange, per particle: answer(pass,
+  /// block, first, count) has the pass find it for a part of a block's pairs, after prepare(begin,
+  /// end) for parts of the particles in the order of cells.
   void sum(Exchange& total, PairAnswer answer,
            FunctionReference<void(std::size_t, std::size_t)> prepare = nothing_to_prepare) {
     sum(total, answer, prepare, nullptr);
@@ -196,8 +203,8 @@ class System {
                             ContactAnswer answer);
   /// Leaves nothing behind of a visit that a kernel has broken off.
   void forget_sums();
-  /// Hands a share of the particles their sums.
-  void scatter_sums(Exchange& total, std::size_t share) const;
+  /// Hands particles their sums.
+  void scatter_sums(Exchange& total, std::size_t begin, std::size_t end) const;
   /// Leaves zeros where there are no internal energies.
   void drop_if_isothermal(std::vector<double>& energies) const;
   void drop_if_isothermal(Surroundings& surroundings) const;

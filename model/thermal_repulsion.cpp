@@ -6,7 +6,6 @@ namespace driftless {
 
 void System::renew_factors() {
   if (factors_version_ == positions_version_) return;
-  find_pairs();
   const auto halves = [](const auto& pair) {
     const auto half = 0.5 * pair.law->thermal_shape(pair.r);
     return Transfer{0 * half, half, half};

@@ -28,9 +28,9 @@ class FunctionReference<void(Arguments...)> {
 };
 
 /// The threads that work on one system. What they compute does not depend on how many there are:
-/// tasks at work at the same time touch nothing in common. Copies work in the same threads; a task
-/// may ask for tasks of its own. The first exception of a task ends the work, in so far as tasks
-/// that have not begun are left out, and is thrown again.
+/// tasks at work at the same time touch nothing in common. Copies work in the same threads; who
+/// asks while they are at work, as a task may, does it all alone. The first exception of a task
+/// ends the work, in so far as tasks that have not begun are left out, and is thrown again.
 class Threads {
  public:
   explicit Threads(unsigned count = 1);
@@ -45,10 +45,10 @@ class Threads {
               FunctionReference<void(unsigned, std::size_t, std::size_t)> body) const;
 
  private:
-  struct Arena;
+  class Team;
 
   unsigned count_;
-  std::shared_ptr<Arena> arena_;
+  std::shared_ptr<Team> team_;
 };
 
 }  // namespace driftless

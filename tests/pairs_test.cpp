@@ -243,9 +243,8 @@ struct Dense {
       : cells(Box{lengths}, 1, particles), blocks(cells, 1, threads) {
     Uniform uniform(seed);
     state = random_state(uniform, Box{lengths}, particles);
-    cells.sort(state, Threads());
-    blocks.find(cells, Threads());
-    blocks.prepare_groups(cells);
+    cells.sort(state);
+    blocks.find(cells);
     for (auto& block : blocks.all()) grouped.push_back(in_order(blocks.group(block, cells)));
   }
 
@@ -303,6 +302,17 @@ TEST(PairGroups, ThatShareAParticleWouldBeNoticed) {
   ASSERT_FALSE(meets_itself(groups));
   groups.pairs.i[1] = groups.pairs.j[0];
   EXPECT_TRUE(meets_itself(groups));
+}
+
+TEST(CellGrid, PutsNeighbouringTilesOfEveryColourSideBySide) {
+  const CellGrid cells(Box{Vector::Constant(10)}, 1, 3000);
+  ASSERT_EQ(cells.tiles(), Eigen::Vector3i(1, 4, 4));
+  for (int z = 0; z < 10; ++z) {
+    for (int y = 0; y < 10; ++y) {
+      const std::size_t quarter = (z >= 5 ? 2 : 0) + (y >= 5 ? 1 : 0);
+      for (int x = 0; x < 10; ++x) EXPECT_EQ(cells.index(x, y, z) / 250, quarter);
+    }
+  }
 }
 
 TEST(PairBlocks, OfOneColourShareNoParticle) {
