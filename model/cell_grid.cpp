@@ -14,17 +14,18 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Fills `places` with those where the cell is one from `first` to below `last`, and `before` with
-/// how many are of cells below. The cells are readable beyond the end by a vector. Returns how
-/// many.
-std::size_t find_places(const std::vector<std::uint32_t>& cells, std::size_t particles,
-                        std::uint32_t first, std::uint32_t last, std::vector<std::uint32_t>& places,
-                        std::uint32_t& before) {
+/// Fills `places` with those whose cell is one from `first` to below `last`; returns how many there
+/// are, and how many places are of cells below. Cells are readable beyond the end by a vector.
+std::pair<std::size_t, std::uint32_t> find_places(const std::vector<std::uint32_t>& cells,
+                                                  std::size_t particles, std::uint32_t first,
+                                                  std::uint32_t last,
+                                                  std::vector<std::uint32_t>& places) {
   const Indices indices;
   const auto begin = hn::Set(indices, first), length = hn::Set(indices, last - first);
-  places.resize(particles + hn::Lanes(indices));
   std::size_t count = 0, below = 0;
   for (std::size_t n = 0; n < particles; n += hn::Lanes(indices)) {
+    // One thread's part is a share of the particles, as large as the others' or nearly.
+    if (places.size() < count + hn::Lanes(indices)) places.resize(count + count / 8 + 1024);
     const auto counted = hn::FirstN(indices, particles - n);
     const auto cell = hn::LoadU(indices, cells.data() + n);
     const auto inside = hn::Lt(hn::Sub(cell, begin), length);
@@ -32,8 +33,7 @@ std::size_t find_places(const std::vector<std::uint32_t>& cells, std::size_t par
     count += store_picked(counting_from(static_cast<std::uint32_t>(n)), hn::And(counted, inside),
                           places.data() + count);
   }
-  before = static_cast<std::uint32_t>(below);
-  return count;
+  return {count, static_cast<std::uint32_t>(below)};
 }
 
 }  // namespace
@@ -156,12 +156,11 @@ std::pair<std::size_t, std::size_t> CellGrid::fill(const State& state, std::size
                                                    std::size_t parts) {
   const std::size_t first = next_.size() * part / parts, last = next_.size() * (part + 1) / parts;
   thread_local std::vector<std::uint32_t> places;
-  std::uint32_t before = 0;
-  const std::size_t count = find_places(cell_, particles_, static_cast<std::uint32_t>(first),
-                                        static_cast<std::uint32_t>(last), places, before);
+  const auto [count, from] = find_places(cell_, particles_, static_cast<std::uint32_t>(first),
+                                         static_cast<std::uint32_t>(last), places);
   std::fill_n(next_.begin() + static_cast<std::ptrdiff_t>(first), last - first, 0);
   for (std::size_t n = 0; n < count; ++n) ++next_[cell_[places[n]]];
-  const std::uint32_t from = before;
+  std::uint32_t before = from;
   for (std::size_t c = first; c < last; ++c) {
     begin_[c] = before;
     before += std::exchange(next_[c], before);
