@@ -6,7 +6,7 @@ namespace {
 // Fewer particles lie in the cache of one core in any order; more are far apart again after a
 // hundred steps, and every thread then reads what others have written.
 constexpr std::size_t most_in_any_order = 1000;
-constexpr std::uint64_t steps_in_order = 50;
+constexpr std::uint64_t steps_in_order = 25;
 
 }  // namespace
 

@@ -100,11 +100,12 @@ struct Box {
 inline Vector Box::wrap(const Vector& position) const {
   Vector wrapped;
   for (int axis = 0; axis < 3; ++axis) {
-    if (is_walled(axis)) {
+    const double length = lengths[axis];
+    // Nearly always inside, and then without a division.
+    if ((position[axis] >= 0 && position[axis] < length) || is_walled(axis)) {
       wrapped[axis] = position[axis];
       continue;
     }
-    const double length = lengths[axis];
     const double x = position[axis] - length * std::floor(position[axis] / length);
     wrapped[axis] = x >= length ? 0 : x;  // rounding may put a tiny negative on the upper edge
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
 namespace driftless {
@@ -85,17 +86,29 @@ PassSeconds System::pass_seconds() const {
   return sum;
 }
 
+template <class Value>
+void System::bring_along(const Places& places, std::vector<Value>& values) const {
+  if (values.size() != places.size()) return;
+  const auto ordered = std::make_unique_for_overwrite<Value[]>(values.size());
+  for_each_particle([&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) ordered[n] = values[places[n]];
+  });
+  for_each_particle([&](std::size_t begin, std::size_t end) {
+    std::copy(&ordered[begin], &ordered[end], &values[begin]);
+  });
+}
+
 Places System::order_storage() {
   find_pairs();
   Places places(size());
   for (std::size_t n = 0; n < size(); ++n) places[n] = cells_.place(n);
-  follow(places, state_.position);
-  follow(places, state_.velocity);
-  follow(places, state_.internal_energy);
-  follow(places, state_.id);
-  follow(places, state_.species);
-  follow(places, conservative_.momentum);
-  follow(places, conservative_.energy);
+  bring_along(places, state_.position);
+  bring_along(places, state_.velocity);
+  bring_along(places, state_.internal_energy);
+  bring_along(places, state_.id);
+  bring_along(places, state_.species);
+  bring_along(places, conservative_.momentum);
+  bring_along(places, conservative_.energy);
   cells_.follow_storage();
   factors_version_ = thermal_positions_version_ = 0;
   return places;

@@ -172,6 +172,9 @@ class System {
                    std::vector<std::uint32_t>& failed) const;
   /// Makes cells, blocks and memory for as many particles and threads as there are.
   void cut_cells();
+  /// follow(), in all threads.
+  template <class Value>
+  void bring_along(const Places& places, std::vector<Value>& values) const;
   void find_pairs();
   bool has_pairs() const { return pairs_version_ == positions_version_; }
   static constexpr auto nothing_to_prepare = [](std::size_t, std::size_t) {};
