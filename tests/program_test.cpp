@@ -78,6 +78,19 @@ TEST_F(Program, WrongUseEndsWithTwo) {
   }
 }
 
+TEST_F(Program, AMistypedCommandLineIsAnsweredWithTheNearestName) {
+  const std::pair<const char*, const char*> answers[] = {
+      {"judgee", "there is no command \"judgee\"; did you mean \"judge\"?"},
+      {"judge shardlow-s1 --dept full", "judge takes no \"--dept\"; did you mean \"--depth\"?"},
+      {"check a.json b.json", "check takes no further \"b.json\""},
+      {"", "name a command; driftless --help lists them"}};
+  for (const auto& [arguments, answer] : answers) {
+    const auto outcome = call(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    EXPECT_EQ(outcome.text, "driftless: " + std::string(answer) + "\n");
+  }
+}
+
 TEST_F(Program, ABadStudyEndsWithTwoInOneSentenceAndWritesNothing) {
   std::ifstream good(good_study());
   std::string text{std::istreambuf_iterator<char>(good), {}};
