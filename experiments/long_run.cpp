@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 
@@ -89,7 +90,7 @@ class Run {
     }
     if (plan_.progress) plan_.progress->begin(step_, plan_.last);
     if (plan_.progress && kept) plan_.progress->checkpoint_written(step_);
-    kept_at_ = Clock::now();
+    begun_at_ = kept_at_ = Clock::now();
     written_ = kept.has_value();
   }
 
@@ -99,8 +100,10 @@ class Run {
       observe();
       written_ = false;
       if (plan_.progress) plan_.progress->reached(step_);
-      const std::chrono::duration<double> since = Clock::now() - kept_at_;
-      if (since.count() >= plan_.checkpoint_every) keep();
+      // Who interrupts a young run loses no more of it than a few seconds, or a third.
+      const std::chrono::duration<double> since = Clock::now() - kept_at_,
+                                          before = kept_at_ - begun_at_;
+      if (since.count() >= std::min(plan_.checkpoint_every, 5 + before.count() / 2)) keep();
     }
     if (!written_) keep();
   }
@@ -161,7 +164,7 @@ class Run {
   json identity_;
   std::uint64_t step_;
   Counters counted_from_, counted_before_;
-  Clock::time_point kept_at_;
+  Clock::time_point begun_at_, kept_at_;
   bool written_ = false;
 };
 

@@ -40,7 +40,7 @@ struct LongRunPlan {
   double time_step = 0;
   std::uint64_t first = 0;           ///< steps that the system has done
   std::uint64_t last = 0;            ///< and has done at the end
-  double checkpoint_every = 60;      ///< seconds of wall time
+  double checkpoint_every = 60;      ///< seconds of wall time at most; sooner in a young run
   StepProgress* progress = nullptr;  ///< told where the run is, if there is one
 };
 
