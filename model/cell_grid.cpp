@@ -36,6 +36,16 @@ std::pair<std::size_t, std::uint32_t> find_places(const std::vector<std::uint32_
   return {count, static_cast<std::uint32_t>(below)};
 }
 
+/// How many pairs of tiles, of the two colours, so many cells are cut into: tiles of one colour are
+/// apart by no less than two cells. A few pairs ought to be alike, as threads wait for the largest.
+int pairs_of_tiles(int cells) {
+  const int most = cells / 4;
+  for (int pairs = most; most < 5 && pairs > 1; --pairs) {
+    if (cells % pairs == 0) return pairs;
+  }
+  return most;
+}
+
 }  // namespace
 
 CellGrid::CellGrid(const Box& box, double range, std::size_t particles)
@@ -78,9 +88,8 @@ void CellGrid::cut(double range) {
 }
 
 void CellGrid::cut_tiles() {
-  constexpr int width = 2;  // tiles of one colour are then apart by no less
   for (int axis = 0; axis < 3; ++axis) {
-    tiles_[axis] = count_[axis] < 4 ? 1 : 2 * (count_[axis] / (2 * width));
+    tiles_[axis] = count_[axis] < 4 ? 1 : 2 * pairs_of_tiles(count_[axis]);
   }
   // Columns have half as many colours, each a phase to wait for; of many particles those of a tile
   // stay in the cache.
