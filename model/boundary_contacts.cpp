@@ -4,8 +4,6 @@ namespace driftless {
 
 void BoundaryContacts::list_groups(const Fluid& fluid, const Box& box) {
   groups_.clear();
-  species_.clear();
-  share_.clear();
   phases_.clear();
   first_.clear();
   if (!box.is_bounded()) return;
@@ -17,9 +15,7 @@ void BoundaryContacts::list_groups(const Fluid& fluid, const Box& box) {
         const PairLaw* const law = fluid.boundary_law(boundary, species);
         if (!law) continue;
         for (std::size_t share = 0; share < shares; ++share) {
-          groups_.push_back({{}, law, boundary});
-          species_.push_back(species);
-          share_.push_back(share);
+          groups_.push_back({{}, law, boundary, species, share});
         }
       }
     }
@@ -27,10 +23,8 @@ void BoundaryContacts::list_groups(const Fluid& fluid, const Box& box) {
   }
 }
 
-void BoundaryContacts::find_some(const CellGrid& cells, std::size_t search) {
-  Group& group = groups_[search];
-  const std::size_t species = species_[search], share = share_[search];
-  const std::size_t particles = cells.particles();
+void BoundaryContacts::find_in(Group& group, const CellGrid& cells) {
+  const std::size_t particles = cells.particles(), share = group.share;
   const auto begin = static_cast<std::uint32_t>(particles * share / shares);
   const auto end = static_cast<std::uint32_t>(particles * (share + 1) / shares);
   const auto side = static_cast<std::uint32_t>(particles + group.boundary * shares + share);
@@ -40,7 +34,7 @@ void BoundaryContacts::find_some(const CellGrid& cells, std::size_t search) {
   const double range = group.law->range();
   group.contacts.size = 0;
   for (std::uint32_t n = begin; n < end; ++n) {
-    if (cells.species(n) != species) continue;
+    if (cells.species(n) != group.species) continue;
     if (!field) {
       const Quadruple& at = cells.position()[n];
       const double x = axis == 0 ? at.x : axis == 1 ? at.y : at.z;

@@ -27,35 +27,31 @@ class BoundaryContacts {
     return 0xffffffffU - static_cast<std::uint32_t>(boundary);
   }
 
-  /// Contacts of one species, no particle twice among them.
+  /// Contacts of one species in a share of the particles, none twice among them.
   struct Group {
     PairIndices contacts;
     const PairLaw* law = nullptr;
-    std::size_t boundary = 0;
+    std::size_t boundary = 0, species = 0, share = 0;
   };
 
-  /// Finds the contacts anew in steps: begin_find(), then find_some() for each number below
-  /// searches(), which may be treated at once. The fluid (Fluid::within) must live as long as they
-  /// are used.
+  /// Finds the contacts anew in steps: begin_find(), then find_in() for every group, for several at
+  /// once. The fluid (Fluid::within) must live as long as they are used.
   void begin_find(const Fluid& fluid, const Box& box) {
     if (groups_.empty()) list_groups(fluid, box);
   }
-  std::size_t searches() const { return groups_.size(); }
-  void find_some(const CellGrid& cells, std::size_t search);
+  static void find_in(Group& group, const CellGrid& cells);
 
   bool any() const { return !groups_.empty(); }
   /// How many groups each phase has: those of a phase may be treated at once, phase after phase.
   std::span<const std::size_t> phases() const { return phases_; }
-  const Group& group(std::size_t phase, std::size_t task) const {
-    return groups_[first_[phase] + task];
-  }
+  Group& group(std::size_t phase, std::size_t task) { return groups_[first_[phase] + task]; }
+  std::vector<Group>& all() { return groups_; }
   std::size_t contacts() const;
 
  private:
   void list_groups(const Fluid& fluid, const Box& box);
 
   std::vector<Group> groups_;
-  std::vector<std::size_t> species_, share_;  ///< of each group
   std::vector<std::size_t> phases_, first_;
 };
 

@@ -348,11 +348,10 @@ void PairBlocks::begin_find(const CellGrid& cells) {
 
 void PairBlocks::find(const CellGrid& cells) {
   begin_find(cells);
-  for (std::size_t n = 0; n < searches(); ++n) find_some(cells, n);
+  for (auto& block : blocks_) find_in(block, cells);
 }
 
-void PairBlocks::find_some(const CellGrid& cells, std::size_t search) {
-  PairBlock& block = blocks_[search_order_[search]];
+void PairBlocks::find_in(PairBlock& block, const CellGrid& cells) const {
   block.grouped = false;
   block.kept.clear();
   // Found in a place with room for all candidates, kept in one as large as what is found.

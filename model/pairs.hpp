@@ -75,11 +75,12 @@ class PairBlocks {
   /// Finds the pairs anew. Single precision decides: a pair beyond the range by up to the cells'
   /// margin may be among them.
   void find(const CellGrid& cells);
-  /// The same in steps: begin_find(), then find_some() for each number below searches(), which may
-  /// be treated at once; their order is such that who finds pairs visits them later.
+  /// The same in steps: begin_find(), then find_in() for every block, for several at once.
   void begin_find(const CellGrid& cells);
-  std::size_t searches() const { return blocks_.size(); }
-  void find_some(const CellGrid& cells, std::size_t search);
+  void find_in(PairBlock& block, const CellGrid& cells) const;
+  /// The blocks in such an order that who finds a share of them visits them later.
+  std::size_t blocks() const { return blocks_.size(); }
+  PairBlock& to_search(std::size_t n) { return blocks_[search_order_[n]]; }
 
   std::size_t pairs() const;
   /// How many blocks each colour has.

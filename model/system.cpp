@@ -118,31 +118,34 @@ void System::find_pairs() {
   if (summing_) forget_sums();
   if (has_pairs()) return;
   const PassClock clock(passes_[0].part(&PassSeconds::search));
-  const auto tasks = begin_search();
+  begin_search();
+  const std::size_t blocks = pairs_.blocks();
+  const std::size_t tasks[] = {threads_.count(), threads_.count(), blocks + contacts_.all().size()};
   threads_.phases(tasks, [&](unsigned, std::size_t phase, std::size_t task) {
-    search(phase, task, nothing_to_prepare);
+    if (phase < 2) {
+      sort_particles(phase, task, nothing_to_prepare);
+    } else if (task < blocks) {
+      pairs_.find_in(pairs_.to_search(task), cells_);
+    } else {
+      contacts_.find_in(contacts_.all()[task - blocks], cells_);
+    }
   });
   pairs_version_ = positions_version_;
 }
 
-std::vector<std::size_t> System::begin_search() {
+void System::begin_search() {
   cells_.begin_sort(state_);
   pairs_.begin_find(cells_);
   contacts_.begin_find(fluid_, box_);
-  return {threads_.count(), threads_.count(), pairs_.searches() + contacts_.searches()};
 }
 
-void System::search(std::size_t phase, std::size_t task,
-                    FunctionReference<void(std::size_t, std::size_t)> prepare) {
+void System::sort_particles(std::size_t phase, std::size_t task,
+                            FunctionReference<void(std::size_t, std::size_t)> prepare) {
   if (phase == 0) {
     cells_.assign(state_, task, threads_.count());
-  } else if (phase == 1) {
+  } else {
     const auto [begin, end] = cells_.fill(state_, task, threads_.count());
     prepare(begin, end);
-  } else if (task < pairs_.searches()) {
-    pairs_.find_some(cells_, task);
-  } else {
-    contacts_.find_some(cells_, task - pairs_.searches());
   }
 }
 
@@ -229,11 +232,12 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
 void System::sum(Exchange& total, PairAnswer answer,
                  FunctionReference<void(std::size_t, std::size_t)> prepare,
                  const ContactAnswer* at_boundary) {
-  if (measured_ || summing_) find_pairs();
+  if (measured_ || summing_ || !at_boundary) find_pairs();
   const bool search_first = !has_pairs();
-  // The search, or particles alone; pairs colour by colour, contacts, and particles again.
-  std::vector<std::size_t> tasks(1, threads_.count());
-  if (search_first) tasks = begin_search();
+  if (search_first) begin_search();
+  // Particles, sorted if need be; pairs colour by colour and contacts, which who visits them finds;
+  // and particles again.
+  std::vector<std::size_t> tasks(search_first ? 2 : 1, threads_.count());
   summing_ = true;
   total.momentum.resize(size());
   total.energy.resize(size());
@@ -262,13 +266,17 @@ void System::sum(Exchange& total, PairAnswer answer,
     const std::size_t begin = size() * task / threads_.count(),
                       end = size() * (task + 1) / threads_.count();
     if (phase < first_colour && search_first) {
-      search(phase, task, start);
+      sort_particles(phase, task, start);
     } else if (phase < first_colour) {
       start(begin, end);
     } else if (phase < first_contact) {
-      for_each_run(pass, pairs_.block(phase - first_colour, task), visit);
+      PairBlock& block = pairs_.block(phase - first_colour, task);
+      if (search_first) pairs_.find_in(block, cells_);
+      for_each_run(pass, block, visit);
     } else if (phase < last) {
-      for_each_contact_run(pass, contacts_.group(phase - first_contact, task), visit_contacts);
+      auto& group = contacts_.group(phase - first_contact, task);
+      if (search_first) contacts_.find_in(group, cells_);
+      for_each_contact_run(pass, group, visit_contacts);
     } else {
       scatter_sums(total, begin, end);
     }

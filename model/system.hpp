@@ -178,11 +178,12 @@ class System {
   void find_pairs();
   bool has_pairs() const { return pairs_version_ == positions_version_; }
   static constexpr auto nothing_to_prepare = [](std::size_t, std::size_t) {};
-  /// The search for pairs and contacts: how many tasks each of its phases has, and one of them,
-  /// with prepare(begin, end) for parts of the particles as soon as the order of cells is known.
-  std::vector<std::size_t> begin_search();
-  void search(std::size_t phase, std::size_t task,
-              FunctionReference<void(std::size_t, std::size_t)> prepare);
+  /// Before pairs and contacts are found anew: memory, and then two phases of as many tasks as
+  /// there are threads, with prepare(begin, end) for parts of the particles as soon as their order
+  /// is known.
+  void begin_search();
+  void sort_particles(std::size_t phase, std::size_t task,
+                      FunctionReference<void(std::size_t, std::size_t)> prepare);
   using PairAnswer = FunctionReference<void(PairPass&, PairBlock&, std::size_t, std::size_t)>;
   using ContactAnswer = FunctionReference<void(PairPass&, std::size_t, std::size_t)>;
   /// Sums what pairs, found before if they are not known, exchange, per particle: answer(pass,
