@@ -192,8 +192,8 @@ std::string traffic_table(const json& bench) {
       "An estimate for a system beyond the cache, from the sizes of what is stored: each array "
       "counts once for each loop over it, read or written. Bytes of a part = in order + pairs per "
       "particle x per pair. Particles lie nearly in the order of cells in which they are worked "
-      "on. Tiles of 27 cells see 94 cells, their neighbours', in "
-      "eight passes: what they see counts 94/27 times. What a shared cache keeps from one pass to "
+      "on. Tiles of 8 cells see 43 cells, their neighbours', in "
+      "eight passes: what they see counts 43/8 times. What a shared cache keeps from one pass to "
       "the next makes a step faster than this limit. The triad counts its writes once too.");
   for (const auto& [kernel, parts] : bench["scaling"]["traffic"].items()) {
     text += "<h3>" + escaped(kernel) +

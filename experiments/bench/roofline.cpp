@@ -15,7 +15,7 @@ namespace {
 
 constexpr double number = sizeof(double), index = sizeof(std::uint32_t), vector = 3 * number,
                  quadruple = sizeof(Quadruple);
-constexpr double halo = 94.0 / 27;
+constexpr double halo = 43.0 / 8;
 constexpr double pair = 2 * index;
 constexpr double motion = vector + number;
 

@@ -22,8 +22,8 @@ struct Traffic {
 
 /// An estimate for a system beyond the cache, from the sizes of what is stored: every array counts
 /// once for each loop over it, read or written. Particles lie nearly in the order of cells in which
-/// they are worked on (begin_step). Tiles of 3 x 3 x 3 cells see 94 cells, their neighbours', and
-/// the eight colours pass one after the other, so that what a tile sees is fetched 94/27 times.
+/// they are worked on (begin_step). Tiles of 2 x 2 x 2 cells see 43 cells, their neighbours', and
+/// the eight colours pass one after the other, so that what a tile sees is fetched 43/8 times.
 std::vector<Traffic> step_traffic(const std::string& kernel);
 /// Sum over the parts.
 double bytes_per_step(const std::string& kernel, double pairs_per_particle);
