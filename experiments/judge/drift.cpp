@@ -58,9 +58,9 @@ std::vector<Setting> settings(Depth depth) {
 Study study_of(const Conditions& conditions) {
   Study study;
   study.equilibrate = 2;
-  study.measure = conditions.depth == Depth::quick ? 40 : 400;
+  study.measure = conditions.depth == Depth::quick ? 40 : 200;
   study.sample_every = 0.4;
-  study.replicas = conditions.depth == Depth::quick ? 8 : 16;
+  study.replicas = 8;
   study.seed = conditions.seed;
   return study;
 }
