@@ -68,10 +68,7 @@ foreach(level ${DRIFTLESS_CPU_LEVELS})
   # Halves what the variants add to the time of a build. The first one is compiled without, so that
   # files still include what they use.
   target_precompile_headers(${variant} PRIVATE model/system.hpp)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # Precompiled, the compiler's own header of AVX-512 is no longer known as one.
-    target_compile_options(${variant} PRIVATE -Wno-maybe-uninitialized)
-  endif()
+  target_compile_options(${variant} PRIVATE ${DRIFTLESS_PRECOMPILED_FALSE_ALARMS})
   add_dependencies(driftless_library ${variant})  # whoever links one can be given the other
   list(APPEND DRIFTLESS_LIBRARIES ${variant})
 endforeach()

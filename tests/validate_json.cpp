@@ -4,9 +4,10 @@
 #include <exception>
 #include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "json_schema.hpp"
+#include "tests/json_schema.hpp"
 
 namespace {
 
