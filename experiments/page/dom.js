@@ -17,7 +17,8 @@ export function replace(id, ...children) {
     .replaceChildren(...children.flat().filter((child) => child !== null && child !== undefined));
 }
 
-// rows: arrays of strings, nodes or {text, ...attributes} cells; the first cell heads its row.
+// rows: arrays of strings, nodes or {text, ...attributes} cells; the first cell heads its row. false: no
+// cell, as one of a row above reaches down.
 export function table(id, caption, head, rows) {
   return element(
     'table',
@@ -40,7 +41,7 @@ export function table(id, caption, head, rows) {
           'tr',
           row.attributes ?? {},
           (row.cells ?? row).map((cell, column) =>
-            table_cell(column ? 'td' : 'th', cell, column ? {} : {scope: 'row'}),
+            cell === false ? null : table_cell(column ? 'td' : 'th', cell, column ? {} : {scope: 'row'}),
           ),
         ),
       ),

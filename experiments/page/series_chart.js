@@ -7,7 +7,8 @@ import {method_scales} from './palette.js';
 const interval_text = ({lower, upper}) =>
   lower === undefined && upper === undefined ? '–' : `${number(lower)} to ${number(upper)}`;
 
-function rows_of(series, {x, y}) {
+// A row of data for every point.
+export function rows_of(series, {x, y}) {
   return series.flatMap(({name, points, marks}) =>
     points
       .filter((point) => (!x.logarithmic || point.x > 0) && (!y.logarithmic || point.y > 0))
@@ -25,7 +26,7 @@ function rows_of(series, {x, y}) {
 }
 
 // A logarithmic axis ends a little below the smallest value, where intervals that go on are cut.
-function scaled(axis, values) {
+export function scaled(axis, values) {
   if (!axis.logarithmic) return {scale: {zero: false, nice: true}, axis: {}};
   const domain = log_domain(values, 1.6);
   return {
@@ -45,7 +46,7 @@ function encodings(chart, rows) {
   };
 }
 
-const tooltip = (chart) => [
+export const tooltip = (chart) => [
   {field: 'name', title: 'series'},
   {field: 'x_text', title: chart.x.title},
   {field: 'y_text', title: chart.y.title},

@@ -70,7 +70,7 @@ const papers = {
       commit: 'abcdef0',
       rows: [
         row('wall pressure', 'agrees', 1.137, {value: 1.1372, low: 1.1322, high: 1.1422}),
-        row('strength', 'differs', 0.9, {value: 1, low: 1, high: 1}),
+        {...row('strength', 'differs', 0.9, {value: 1, low: 1, high: 1}), setting: 'at <other> settings'},
         {...row('sense', 'ours alone', 1), ours: {}, paper_text: 'it turns'},
       ],
       pictures: [
@@ -102,7 +102,8 @@ test('rows, verdicts and pictures are shown, without a fault', async () => {
     rows.map((one) => [...one.children].map(({textContent}) => textContent)),
   );
   assert.deepEqual(cells[0].slice(2, 5), ['1.1372 ± 0.0050', '1.137 ± 0.010', 'agrees']);
-  assert.deepEqual(cells[1].slice(2, 6), ['1', '0.900 ± 0.010', 'differs by −10 %', 'It is ± so.']);
+  assert.deepEqual(cells[0].slice(5), ['It is ± so.']);
+  assert.deepEqual(cells[1].slice(2), ['1', '0.900 ± 0.010', 'differs by −10 %']);
   assert.deepEqual(cells[2].slice(2, 5), ['“it turns”', '–', 'ours alone']);
   const overview = await page.$$eval('#overview-table tbody tr', (rows) =>
     rows.map((one) => [...one.children].map(({textContent}) => textContent)),
@@ -117,6 +118,63 @@ test('rows, verdicts and pictures are shown, without a fault', async () => {
   await page.context().close();
 });
 
+test('what rows beside each other have in common is said once', async () => {
+  const [experiment] = papers.experiments;
+  const rows = ['agrees', 'differs', 'agrees'].map((verdict) => row('strength', verdict, 1));
+  rows[2].explanation = 'It is not.';
+  rows.push(row('sense', 'agrees', 1));
+  const {page} = await open(page_of({...papers, experiments: [{...experiment, rows}]}));
+  const spans = await page.$$eval('#rows-roll tbody tr', (all) =>
+    all.map((one) => [...one.children].map(({rowSpan}) => rowSpan)),
+  );
+  assert.deepEqual(spans, [
+    [3, 4, 1, 1, 1, 2],
+    [1, 1, 1],
+    [1, 1, 1, 1],
+    [1, 1, 1, 1, 1],
+  ]);
+  await page.context().close();
+});
+
+test('many values are counted by quantity, and listed for who asks', async () => {
+  const [experiment] = papers.experiments;
+  const rows = Array.from({length: 13}, (_, n) => row(n % 2 ? 'odd' : 'even', n < 3 ? 'differs' : 'agrees', n));
+  const {page} = await open(page_of({...papers, experiments: [{...experiment, rows}]}));
+  const counts = await page.$$eval('#quantities-roll tbody tr', (all) =>
+    all.map((one) => [...one.children].map(({textContent}) => textContent)),
+  );
+  assert.deepEqual(counts, [
+    ['even', '5', '2', '0', '0', ''],
+    ['odd', '5', '1', '0', '0', ''],
+    ['all', '10', '3', '0', '0', ''],
+  ]);
+  assert.equal(await page.locator('#rows-roll').isVisible(), false);
+  await page.click('#roll summary:has-text("All 13 values")');
+  assert.equal(await page.locator('#rows-roll').isVisible(), true);
+  await page.context().close();
+});
+
+test('many series at the same few places stand side by side', async () => {
+  const [experiment] = papers.experiments;
+  const pictures = [8, 7].map((count) => ({
+    title: `${count} series`,
+    caption: '',
+    chart: chart(...Array.from({length: count}, (_, n) => series(`method ${n}`, 'points'))),
+  }));
+  const {page, faults} = await open(page_of({...papers, experiments: [{...experiment, pictures}]}));
+  const texts = (index) =>
+    page.$$eval(`#chart-roll-${index} svg text`, (all) => all.map(({textContent}) => textContent));
+  const marks = await counted_marks(page);
+  assert.equal(marks['chart-roll-0'].points, 24);
+  assert.equal(marks['chart-roll-1'].points, 21);
+  // The series are the axis and the places the legend, or the other way round.
+  const names = (count) => Array.from({length: count}, (_, n) => `method ${n}`);
+  assert.deepEqual((await texts(0)).slice(-13), ['temperature', ...names(8), '1', '2', '3', 'time']);
+  assert.deepEqual((await texts(1)).slice(-8), ['temperature', ...names(7)]);
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
+
 test('theory has a column of its own, and a verdict against it says so', async () => {
   const theory = {value: 1, low: 1, high: 1};
   const [experiment] = papers.experiments;
@@ -125,7 +183,7 @@ test('theory has a column of its own, and a verdict against it says so', async (
     {...row('two', 'agrees', 1), theory},
     row('three', 'differs', 1.2, {value: 1, low: 1, high: 1}),
   ];
-  const {page} = await open(page_of({...papers, experiments: [{...experiment, rows}]}));
+  const {page} = await open(page_of({...papers, experiments: [{...experiment, rows: rows.map((one, n) => ({...one, setting: `${n}`}))}]}));
   const columns = await page.$$eval('#rows-roll tr', (all) =>
     all.map((one) => [...one.children].map(({textContent}) => textContent).slice(2, 6)),
   );

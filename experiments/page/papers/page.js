@@ -5,7 +5,8 @@ import {number} from '../format.js';
 import {render_provenance} from '../provenance.js';
 import {chart_spec} from '../series_chart.js';
 import {field_spec, longest_arrow} from './field.js';
-import {key_of, overview_table, rows_table, title_of} from './tables.js';
+import {is_crowded, side_by_side_spec} from './side_by_side.js';
+import {key_of, overview_table, quantities_table, rows_table, title_of} from './tables.js';
 
 const papers = JSON.parse(document.getElementById('result').textContent);
 const chart_id = (experiment, index) => `chart-${key_of(experiment)}-${index}`;
@@ -40,6 +41,20 @@ function pictures_of(experiment) {
   );
 }
 
+const most_shown = 12;
+
+// Many values are counted, and listed for who asks for them.
+function values_of(experiment) {
+  const count = experiment.rows.length;
+  if (!count) return null;
+  const listed = element('div', {class: 'scroll'}, rows_table(experiment));
+  if (count <= most_shown) return listed;
+  return [
+    element('div', {class: 'scroll'}, quantities_table(experiment)),
+    element('details', {}, element('summary', {}, `All ${count} values`), listed),
+  ];
+}
+
 function remarks_of({remarks}) {
   if (!remarks.length) return null;
   return element(
@@ -50,7 +65,7 @@ function remarks_of({remarks}) {
 }
 
 function section_of(experiment) {
-  const {name, source, question, failure, rows, command, commit} = experiment;
+  const {name, source, question, failure, command, commit} = experiment;
   const title = title_of(experiment);
   return element(
     'section',
@@ -60,17 +75,21 @@ function section_of(experiment) {
     element('p', {}, question),
     element('p', {class: 'note'}, element('code', {}, command), ` (commit ${commit})`),
     failure ? element('p', {class: 'failure'}, `It failed. ${failure}`) : null,
-    rows.length ? element('div', {class: 'scroll'}, rows_table(experiment)) : null,
     pictures_of(experiment),
+    values_of(experiment),
     remarks_of(experiment),
   );
+}
+
+function spec_of(chart, field) {
+  if (chart) return is_crowded(chart) ? side_by_side_spec(chart) : chart_spec(chart);
+  return field ? field_spec(field) : null;
 }
 
 function draw_pictures() {
   for (const experiment of papers.experiments) {
     experiment.pictures.forEach(({title, chart, field}, index) => {
-      const spec = chart ? chart_spec(chart) : field ? field_spec(field) : null;
-      draw(chart_id(experiment, index), spec, `${title}, ${experiment.source}${experiment.method ? ` with ${experiment.method}` : ''}`);
+      draw(chart_id(experiment, index), spec_of(chart, field), `${title}, ${experiment.source}${experiment.method ? ` with ${experiment.method}` : ''}`);
     });
   }
 }

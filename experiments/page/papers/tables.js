@@ -10,26 +10,43 @@ const numeric = (text) => ({text, class: 'number'});
 export const key_of = ({name, method}) => (method ? `${name}-with-${method.replace(/[^\w-]/g, '-')}` : name);
 export const title_of = ({title, method}) => (method ? `${title}, with ${method}` : title);
 
-export function overview_table(experiments) {
-  const rows = experiments.map((experiment) => {
-    const {source, rows: values, failure} = experiment;
-    const counts = verdicts.map((verdict) => {
-      const count = values.filter((row) => row.verdict === verdict).length;
-      return {text: failure ? '–' : String(count), class: `number ${count ? css_class(verdict) : 'none'}`};
-    });
-    return [
-      element('a', {href: `#${key_of(experiment)}`}, title_of(experiment)),
-      source,
-      ...counts,
-      failure ? {text: 'failed', class: 'differs'} : '',
-    ];
+const count_of = (rows, verdict) => rows.filter((row) => row.verdict === verdict).length;
+
+const count_cells = (rows) =>
+  verdicts.map((verdict) => {
+    const count = count_of(rows, verdict);
+    return {text: String(count), class: `number ${count ? css_class(verdict) : 'none'}`};
   });
-  const total = verdicts.map((verdict) =>
-    numeric(String(experiments.flatMap((one) => one.rows).filter((row) => row.verdict === verdict).length)),
-  );
-  const head = ['experiment', 'source', ...verdicts.map(numeric), ''];
-  if (rows.length > 1) rows.push({cells: ['all', '', ...total, ''], attributes: {class: 'total'}});
-  return table('overview-table', '', head, rows);
+
+function counts_table(id, head, rows, all) {
+  const total = verdicts.map((verdict) => numeric(String(count_of(all, verdict))));
+  const blank = head.slice(1).map(() => '');
+  if (rows.length > 1) rows.push({cells: ['all', ...blank, ...total, ''], attributes: {class: 'total'}});
+  const made = table(id, '', [...head, ...verdicts.map(numeric), ''], rows);
+  made.classList.add('counts-table');
+  return made;
+}
+
+export function overview_table(experiments) {
+  const rows = experiments.map((experiment) => [
+    element('a', {href: `#${key_of(experiment)}`}, title_of(experiment)),
+    experiment.source,
+    ...(experiment.failure ? verdicts.map(() => numeric('–')) : count_cells(experiment.rows)),
+    experiment.failure ? {text: 'failed', class: 'differs'} : '',
+  ]);
+  const all = experiments.flatMap((experiment) => experiment.rows);
+  return counts_table('overview-table', ['experiment', 'source'], rows, all);
+}
+
+// How much agrees of each quantity, where there are many values.
+export function quantities_table(experiment) {
+  const quantities = [...new Set(experiment.rows.map((row) => row.quantity))];
+  const rows = quantities.map((quantity) => [
+    quantity,
+    ...count_cells(experiment.rows.filter((row) => row.quantity === quantity)),
+    '',
+  ]);
+  return counts_table(`quantities-${key_of(experiment)}`, ['quantity'], rows, experiment.rows);
 }
 
 const minus = (text) => text.replace(/^-/, '−');
@@ -73,6 +90,21 @@ function verdict_text({verdict, paper, theory, ours}) {
   return `differs by ${sign}${other.value === 0 ? number(difference) : percent(difference / Math.abs(other.value))}${from}`;
 }
 
+// How many rows from each one on say the same; 0 where an earlier one says it for this one.
+function spans_of(texts) {
+  return texts.map((text, index) => {
+    if (index > 0 && texts[index - 1] === text) return 0;
+    const after = texts.findIndex((other, later) => later > index && other !== text);
+    return (after < 0 ? texts.length : after) - index;
+  });
+}
+
+// What rows beside each other have in common is said once.
+function said_once(cells, make) {
+  const spans = spans_of(cells);
+  return cells.map((text, index) => (spans[index] ? make(text, spans[index]) : false));
+}
+
 const with_unit = (text, unit) => (unit && unit !== '1' ? `${text}, ${unit}` : text);
 
 export function rows_table(experiment) {
@@ -80,15 +112,29 @@ export function rows_table(experiment) {
   // Only some experiments have a theory beside a paper whose numbers are not known to us.
   const theory = rows.some((row) => row.theory);
   const head = ['quantity', 'setting', 'paper', ...(theory ? ['theory'] : []), 'ours, 95 %', 'verdict', 'explanation'];
-  const body = rows.map((row) => [
-    with_unit(row.quantity, row.unit),
-    row.setting,
-    {text: paper_cell(row), class: 'value'},
-    ...(theory ? [{text: theory_cell(row), class: 'value'}] : []),
-    {text: interval_text(row.ours), class: 'value'},
-    {text: verdict_text(row), class: `verdict ${css_class(row.verdict)}`},
-    {text: row.explanation.replaceAll('+-', '±'), class: 'explanation'},
-  ]);
+  const quantities = said_once(
+    rows.map((row) => with_unit(row.quantity, row.unit)),
+    (text, rowspan) => ({text, rowspan, scope: 'rowgroup'}),
+  );
+  const settings = said_once(
+    rows.map((row) => row.setting),
+    (text, rowspan) => ({text, rowspan}),
+  );
+  const explanations = said_once(
+    rows.map((row) => row.explanation.replaceAll('+-', '±')),
+    (text, rowspan) => ({text, rowspan, class: 'explanation'}),
+  );
+  const body = rows.map((row, index) => ({
+    cells: [
+      quantities[index],
+      settings[index],
+      {text: paper_cell(row), class: 'value'},
+      ...(theory ? [{text: theory_cell(row), class: 'value'}] : []),
+      {text: interval_text(row.ours), class: 'value'},
+      {text: verdict_text(row), class: `verdict ${css_class(row.verdict)}`},
+      explanations[index],
+    ],
+  }));
   const made = table(`rows-${key_of(experiment)}`, '', head, body);
   made.classList.add('rows-table');
   return made;
