@@ -12,6 +12,9 @@
 
 namespace driftless {
 
+/// How many pairs a pass takes at most: what it reads and writes then stays in the cache.
+inline constexpr std::size_t pairs_a_chunk = 512;
+
 /// What a pass over pairs reads and writes, in the order of cells.
 struct PassParticles {
   const Quadruple* motion = nullptr;  ///< velocities and energies that the pairs see

@@ -188,15 +188,11 @@ class System {
   using ContactAnswer = FunctionReference<void(PairPass&, std::size_t, std::size_t)>;
   /// Sums what pairs, found before if they are not known, exchange, per particle: answer(pass,
   /// block, first, count) has the pass find it for a part of a block's pairs, after prepare(begin,
-  /// end) for parts of the particles in the order of cells.
+  /// end) for parts of the particles in the order of cells; and at_boundary(pass, boundary, count)
+  /// for contacts with boundaries, if there is any.
   void sum(Exchange& total, PairAnswer answer,
-           FunctionReference<void(std::size_t, std::size_t)> prepare = nothing_to_prepare) {
-    sum(total, answer, prepare, nullptr);
-  }
-  /// And at_boundary(pass, boundary, count) for contacts with boundaries, if there is any.
-  void sum(Exchange& total, PairAnswer answer,
-           FunctionReference<void(std::size_t, std::size_t)> prepare,
-           const ContactAnswer* at_boundary);
+           FunctionReference<void(std::size_t, std::size_t)> prepare = nothing_to_prepare,
+           const ContactAnswer* at_boundary = nullptr);
   /// visit(pass, block, first, count) when the pass has taken a part of a block's pairs, of one
   /// kind and no more than stay in the cache.
   void for_each_run(PairPass& pass, PairBlock& block, PairAnswer visit);

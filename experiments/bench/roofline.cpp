@@ -19,7 +19,7 @@ constexpr double halo = 43.0 / 8;
 constexpr double pair = 2 * index;
 constexpr double motion = vector + number;
 
-// Once for each set of positions; model/cell_grid.cpp and model/pairs.cpp.
+// Once for each set of positions; model/cell_grid.cpp and model/pair_search.cpp.
 constexpr Traffic sort = {"particles into cells",
                           vector +                 // positions
                               3 * index + index +  // cells written, read twice; ids
