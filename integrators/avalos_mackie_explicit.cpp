@@ -33,9 +33,11 @@ class AvalosMackieExplicit : public Integrator {
           },
           exchange_);
     } else {
-      change_by_noise(system, dt);
+      // To the motion after the changes of O(dt^{1/2}); no law is ever asked at its energies.
+      system.accumulate([&](const auto& pair) { return noise_exchange(fluid, pair, dt); },
+                        exchange_);
       system.accumulate(
-          trial_,
+          exchange_,
           [&](const auto& start, const auto& end) {
             return expanded_exchange(fluid, start, changes(start, end), dt);
           },
@@ -46,17 +48,7 @@ class AvalosMackieExplicit : public Integrator {
   }
 
  private:
-  /// The motion after the changes of O(dt^{1/2}); no law is ever asked at these energies.
-  void change_by_noise(System& system, double dt) {
-    const Fluid& fluid = system.fluid();
-    system.accumulate([&](const auto& pair) { return noise_exchange(fluid, pair, dt); }, exchange_);
-    trial_ = system.motion();
-    take_momenta(system, exchange_, trial_);
-    take_energies(system, exchange_, trial_);
-  }
-
   bool own_products_;
-  Motion trial_;
   Exchange exchange_;
 };
 

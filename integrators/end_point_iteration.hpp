@@ -23,14 +23,14 @@ class EndPointRound {
     system.accumulate(
         trial_, [&](const auto& start, const auto& end) { return Transfer{momentum(start, end)}; },
         exchange_, {}, Rounds::several);
-    take_momenta(system, exchange_, trial_);
+    take_momenta(system);
     system.accumulate(
         trial_,
         [&](const auto& start, const auto& end) {
           return energy(start, end, momentum(start, end));
         },
         exchange_, {}, Rounds::several);
-    take_surroundings_energy(system, exchange_, trial_);
+    take_surroundings_energy(system);
   }
 
   /// Where the round started: the last u', and after it the p' that follow.
@@ -41,6 +41,23 @@ class EndPointRound {
   }
 
  private:
+  void take_momenta(const System& system) {
+    const Motion& start = system.motion();
+    for (std::size_t i = 0; i < system.size(); ++i) {
+      trial_.velocity[i] = start.velocity[i] + exchange_.momentum[i] * (1 / system.mass(i));
+    }
+    for (std::size_t n = 0; n < surrounding_places; ++n) {
+      trial_.surroundings[n].momentum =
+          start.surroundings[n].momentum + exchange_.surroundings[n].momentum;
+    }
+  }
+  void take_surroundings_energy(const System& system) {
+    for (std::size_t n = 0; n < surrounding_places; ++n) {
+      trial_.surroundings[n].energy =
+          system.motion().surroundings[n].energy + exchange_.surroundings[n].energy;
+    }
+  }
+
   Motion trial_;
   Exchange exchange_;
 };

@@ -83,36 +83,6 @@ inline void euler_maruyama_step(System& system, double dt, Exchange& exchange) {
   system.apply(exchange);
 }
 
-/// The motion to which the momenta of an exchange lead, energies as they are; the system stays as
-/// it is.
-inline void take_momenta(const System& system, const Exchange& exchange, Motion& trial) {
-  const Motion& start = system.motion();
-  for (std::size_t i = 0; i < system.size(); ++i) {
-    trial.velocity[i] = start.velocity[i] + exchange.momentum[i] * (1 / system.mass(i));
-  }
-  for (std::size_t n = 0; n < surrounding_places; ++n) {
-    trial.surroundings[n].momentum =
-        start.surroundings[n].momentum + exchange.surroundings[n].momentum;
-  }
-}
-
-/// What the energies of an exchange make of the surroundings' in a motion.
-inline void take_surroundings_energy(const System& system, const Exchange& exchange,
-                                     Motion& trial) {
-  for (std::size_t n = 0; n < surrounding_places; ++n) {
-    trial.surroundings[n].energy =
-        system.motion().surroundings[n].energy + exchange.surroundings[n].energy;
-  }
-}
-
-/// The motion to which the energies of an exchange lead, velocities as they are.
-inline void take_energies(const System& system, const Exchange& exchange, Motion& trial) {
-  for (std::size_t i = 0; i < system.size(); ++i) {
-    trial.internal_energy[i] = system.motion().internal_energy[i] + exchange.energy[i];
-  }
-  take_surroundings_energy(system, exchange, trial);
-}
-
 /// The pair as it stands after an exchange, for the next flow of the same pair.
 template <class V>
 Pair<V> after(const Fluid& fluid, Pair<V> pair, const Transfer<V>& transfer) {

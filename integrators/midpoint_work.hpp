@@ -18,22 +18,20 @@ class MidpointWork {
       return fluid.has_friction() ? euler_friction(fluid, pair, dt).momentum : decltype(pair.v)(0);
     };
     system.accumulate([&](const auto& pair) { return Transfer{momentum(pair)}; }, exchange_);
-    trial_ = system.motion();
-    take_momenta(system, exchange_, trial_);
     system.accumulate(
-        trial_,
+        exchange_,
         [&](const auto& start, const auto& end) {
-          auto total = midpoint_work(momentum(start), start, end);
+          const auto f = momentum(start);
+          auto total = midpoint_work(f, start, end);
+          total.momentum = f;
           if (fluid.has_conduction()) total += euler_conduction(fluid, start, dt);
           return total;
         },
         exchange_);
-    take_energies(system, exchange_, trial_);
-    system.set_motion(trial_);
+    system.apply(exchange_);
   }
 
  private:
-  Motion trial_;
   Exchange exchange_;
 };
 

@@ -63,6 +63,17 @@ void System::gather_motion(const Motion& motion, std::vector<Quadruple>& gathere
   }
 }
 
+void System::gather_trial(const TrialEnd& trial, std::size_t begin, std::size_t end) {
+  if (trial.motion) return gather_motion(*trial.motion, trial_, begin, end);
+  const bool isothermal = fluid_.isothermal();
+  for (std::size_t n = begin; n < end; ++n) {
+    const std::size_t place = cells_.place(n);
+    const Vector v = state_.velocity[place] + trial.change->momentum[place] * (1 / mass(place));
+    const double u = state_.internal_energy[place] + trial.change->energy[place];
+    trial_[n] = {v[0], v[1], v[2], isothermal ? fluid_.bath_energy() : u};
+  }
+}
+
 void System::count_visit(bool noise, bool uniforms) {
   const std::uint64_t pairs = pairs_.pairs() + contacts_.contacts();
   counters_.pair_evaluations += pairs;
@@ -91,15 +102,15 @@ void System::work_in_kept(PairPass& pass, PairBlock& block, std::size_t first, S
   pass.work_in(block.kept.data() + first, apart, keeps_geometry());
 }
 
-void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total, Stage stage,
-                        Rounds rounds) {
-  const bool again = rounds == Rounds::several;
+void System::accumulate(const PairKernel& kernel, const TrialEnd& trial, Exchange& total,
+                        Stage stage, Rounds rounds) {
+  const bool again = rounds == Rounds::several, has_trial = trial.motion || trial.change;
   if (again) find_pairs();  // what is kept is of these
   make_room(motion_);
-  if (trial) make_room(trial_);
+  if (has_trial) make_room(trial_);
   const auto gather = [&](std::size_t begin, std::size_t end) {
     gather_motion(state_, motion_, begin, end);
-    if (trial) gather_motion(*trial, trial_, begin, end);
+    if (has_trial) gather_trial(trial, begin, end);
   };
   const PassParticles particles{motion_.data(), trial_.data(), nullptr, nullptr};
   const bool kept = again && is_kept(stage);
@@ -109,14 +120,14 @@ void System::accumulate(const PairKernel& kernel, const Motion* trial, Exchange&
     if (!kept) pass.draw_normals(noise_, stage);
     pass.draw_no_uniforms();
     pass.motion(particles, 0, count);
-    if (trial) pass.trial(particles);
+    if (has_trial) pass.trial(particles);
     pass.run(kernel, 0, count);
   };
   const auto at_boundary = [&](PairPass& pass, std::size_t boundary, std::size_t count) {
     pass.draw_contact_normals(noise_, stage, BoundaryContacts::id(boundary));
     pass.draw_no_uniforms();
     pass.motion(particles, 0, count);
-    if (trial) pass.trial(particles);
+    if (has_trial) pass.trial(particles);
     pass.run(kernel, 0, count);
   };
   const ContactAnswer contacts(at_boundary);

@@ -74,7 +74,7 @@ class System {
   /// called pair by pair.
   template <class Kernel>
   void accumulate(const Kernel& kernel, Exchange& total, Stage stage = {}) {
-    accumulate(PairKernel::of(kernel), nullptr, total, stage);
+    accumulate(PairKernel::of(kernel), {}, total, stage);
   }
 
   /// The same with a trial end of the step: kernel(const Pair<V>& start, const TrialPair<V>& end),
@@ -82,7 +82,14 @@ class System {
   template <class Kernel>
   void accumulate(const Motion& trial, const Kernel& kernel, Exchange& total, Stage stage = {},
                   Rounds rounds = Rounds::one) {
-    accumulate(PairKernel::of_trial(kernel), &trial, total, stage, rounds);
+    accumulate(PairKernel::of_trial(kernel), {&trial, nullptr}, total, stage, rounds);
+  }
+
+  /// The same with the trial end to which a change of the present motion leads; `total` may be what
+  /// holds it. For methods whose second visit sees the outcome of the first.
+  template <class Kernel>
+  void accumulate(const Exchange& change, const Kernel& kernel, Exchange& total, Stage stage = {}) {
+    accumulate(PairKernel::of_trial(kernel), {nullptr, &change}, total, stage);
   }
 
   /// Pair after pair in the given order, each seeing the results of the ones before it:
@@ -155,7 +162,12 @@ class System {
   void set_state(State state);
 
  private:
-  void accumulate(const PairKernel& kernel, const Motion* trial, Exchange& total, Stage stage,
+  /// A trial end of a step, if there is one: as it is, or by what leads to it.
+  struct TrialEnd {
+    const Motion* motion = nullptr;
+    const Exchange* change = nullptr;
+  };
+  void accumulate(const PairKernel& kernel, const TrialEnd& trial, Exchange& total, Stage stage,
                   Rounds rounds = Rounds::one);
   void sweep(const PairKernel& kernel, const Sweep& how);
   void sweep_groups(PairPass& pass, const GroupedPairs& grouped, const PassParticles& particles,
@@ -220,6 +232,7 @@ class System {
   void make_room(std::vector<Quadruple>& gathered) const;
   void gather_motion(const Motion& motion, std::vector<Quadruple>& gathered, std::size_t begin,
                      std::size_t end) const;
+  void gather_trial(const TrialEnd& trial, std::size_t begin, std::size_t end);
   void count_visit(bool noise, bool uniforms);
   void renew_conservative();
   /// The factors chi of the present positions, and the force with what follows the temperatures.

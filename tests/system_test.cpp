@@ -489,10 +489,8 @@ TEST(Noise, OfTrialStepsIsDrawnOncePerStepStageAndPositions) {
   EXPECT_NE(total.momentum, before_move);
 }
 
-/// A fluid of some terms and a state of so many particles at density 3, at random.
-System random_system(double friction, HeatForm heat, std::size_t particles) {
-  auto f = small_fluid({FrictionClosure::noise, heat, true}, 0.5);
-  f.friction = friction;
+/// So many particles at density 3, at random.
+System random_system(const FluidParameters& f, std::size_t particles) {
   Box box{Vector::Constant(std::cbrt(static_cast<double>(particles) / 3))};
   Uniform uniform(3);
   State state;
@@ -516,7 +514,9 @@ TEST(Rounds, ThatShareWhatIsKeptSeeWhatOneAloneSees) {
   for (const std::size_t particles : {200, 10100}) {
     for (const auto heat : {HeatForm::none, HeatForm::temperature}) {
       for (const double friction : {0.0, 2.0}) {
-        System system = random_system(friction, heat, particles);
+        auto f = small_fluid({FrictionClosure::noise, heat, true}, 0.5);
+        f.friction = friction;
+        System system = random_system(f, particles);
         Motion trial = system.motion();
         Exchange alone, shared;
         for (int round = 0; round < 3; ++round) {
@@ -528,6 +528,33 @@ TEST(Rounds, ThatShareWhatIsKeptSeeWhatOneAloneSees) {
           if (round == 1) system.set_motion(trial);
         }
       }
+    }
+  }
+}
+
+// The end to which a change leads is the end itself, and the change may be overwritten by what the
+// pairs exchange.
+TEST(Trials, AreSeenByWhatLeadsToThem) {
+  for (const std::size_t particles : {200, 10100}) {
+    for (const bool isothermal : {false, true}) {
+      auto f = small_fluid({FrictionClosure::noise, HeatForm::none, true}, 0.5);
+      f.isothermal = isothermal;
+      System system = random_system(f, particles);
+      Exchange change;
+      system.accumulate(everything, change, 7);
+      Motion trial = system.motion();
+      for (std::size_t i = 0; i < system.size(); ++i) {
+        trial.velocity[i] += change.momentum[i] * (1 / system.mass(i));
+        trial.internal_energy[i] += change.energy[i];
+      }
+      Exchange by_motion, by_change;
+      system.accumulate(trial, everything_of_a_trial, by_motion, 1);
+      system.accumulate(change, everything_of_a_trial, by_change, 1);
+      EXPECT_EQ(by_motion.momentum, by_change.momentum) << particles;
+      EXPECT_EQ(by_motion.energy, by_change.energy) << particles;
+      system.accumulate(change, everything_of_a_trial, change, 1);
+      EXPECT_EQ(by_motion.momentum, change.momentum) << particles;
+      EXPECT_EQ(by_motion.energy, change.energy) << particles;
     }
   }
 }

@@ -127,17 +127,20 @@ Finding at_a_step(const Ladder& ladder) {
   return finding;
 }
 
-/// The differences that the three smallest steps leave at a vanishing one, if they are certain and
-/// at least half of what is left at the smallest step: less could be the parabola's own error.
+/// The differences that the three smallest steps, each half of the one before, leave at a vanishing
+/// one, if they are certain, at least half of what is left at the smallest step, and at least twice
+/// what the parabola through the three changes of the line through two: less could be the
+/// parabola's own error.
 std::optional<Finding> remains(const Ladder& ladder, const Finding& asked) {
   const auto& looks = ladder.looks;
   const auto count = looks.size();
   if (count < 3) return {};
-  const auto limit = at_vanishing_step(
-      {looks[count - 3].vector, looks[count - 2].vector, looks[count - 1].vector});
+  const auto &smallest = looks[count - 1].vector, &next = looks[count - 2].vector;
+  const auto limit = at_vanishing_step({looks[count - 3].vector, next, smallest});
   const auto column = clearest(limit);
-  const bool most_of_it =
-      std::abs(limit.mean[column]) > 0.5 * std::abs(looks.back().vector.mean[column]);
+  const double left = limit.mean[column], line = 2 * smallest.mean[column] - next.mean[column];
+  const bool most_of_it = std::abs(left) > 0.5 * std::abs(smallest.mean[column]) &&
+                          std::abs(left) > 2 * std::abs(left - line);
   const bool sure = std::abs(z(limit, column)) > certain && hotelling(limit).certainly_not_chance();
   if (!most_of_it || !sure) return {};
   Finding finding = asked;
@@ -147,7 +150,7 @@ std::optional<Finding> remains(const Ladder& ladder, const Finding& asked) {
   finding.sentence = fmt::format(
       "Forwards and backwards differ however small the step: of {} by {} at step {:g} and, "
       "extrapolated, by {} at vanishing steps.",
-      ladder.columns[column], with_interval(looks.back().vector, column), looks.back().step,
+      ladder.columns[column], with_interval(smallest, column), looks.back().step,
       with_interval(limit, column));
   return finding;
 }
