@@ -7,169 +7,24 @@
 #include <string>
 #include <type_traits>
 
+#include "experiments/scene_key_groups.hpp"
 #include "integrators/integrator.hpp"
 
 namespace driftless {
-namespace {
 
 using nlohmann::json;
 
 json to_list(const Vector& v) { return {v[0], v[1], v[2]}; }
 
-const std::vector<std::pair<const char*, double Wall::*>>& wall_numbers() {
-  static const std::vector<std::pair<const char*, double Wall::*>> numbers = {
-      {"repulsion", &Wall::repulsion},   {"repulsion_range", &Wall::repulsion_range},
-      {"friction", &Wall::friction},     {"friction_range", &Wall::friction_range},
-      {"conduction", &Wall::conduction}, {"heat_range", &Wall::heat_range}};
-  return numbers;
+Vector to_vector(const json& list) {
+  return {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()};
 }
 
-json to_json(const std::optional<Wall>& wall) {
-  if (!wall) return nullptr;
-  json object = json::object();
-  if (wall->temperature) object["temperature"] = *wall->temperature;
-  for (const auto& [name, member] : wall_numbers()) object[name] = *wall.*member;
-  return object;
+std::string_view of_fluids(const Scene& scene) {
+  return scene.layout == Layout::fluid ? "" : "isolated pairs stand on a lattice of their own";
 }
 
-Wall to_wall(const json& object) {
-  Wall wall;
-  if (object.contains("temperature")) wall.temperature = object["temperature"].get<double>();
-  for (const auto& [name, member] : wall_numbers()) {
-    if (object.contains(name)) wall.*member = object[name].get<double>();
-  }
-  return wall;
-}
-
-ValueRule wall_rule() {
-  const auto number = ValueRule::not_negative(), range = ValueRule::positive();
-  return ValueRule::object(
-      "a wall",
-      {{"temperature", range, false, "of a reservoir; without it the wall is adiabatic"},
-       {"repulsion", number, false, "largest repulsive force"},
-       {"repulsion_range", range, false, "distance at which the repulsion ends"},
-       {"friction", number, false, "normal friction coefficient zeta_0 of a reservoir"},
-       {"friction_range", range, false, "distance at which the friction ends"},
-       {"conduction", number, false, "L_0 or lambda_0 of a reservoir, as the fluid's heat_form"},
-       {"heat_range", range, false, "distance at which the conduction ends"}});
-}
-
-ValueRule walls_rule() {
-  std::vector<Field> faces;
-  for (const char* name : wall_names) {
-    faces.push_back({name, wall_rule(), false, "wall at this side of the box, in pairs"});
-  }
-  return ValueRule::object("walls", faces);
-}
-
-json walls_of(const Scene& scene) {
-  json object = json::object();
-  for (std::size_t n = 0; n < wall_names.size(); ++n) {
-    if (scene.walls[n]) object[wall_names[n]] = to_json(scene.walls[n]);
-  }
-  return object;
-}
-
-void set_walls(Scene& scene, const json& object) {
-  for (std::size_t n = 0; n < wall_names.size(); ++n) {
-    scene.walls[n].reset();
-    if (object.contains(wall_names[n])) scene.walls[n] = to_wall(object[wall_names[n]]);
-  }
-}
-
-const std::vector<std::pair<const char*, SlabDrive>>& slab_drives() {
-  static const std::vector<std::pair<const char*, SlabDrive>> drives = {
-      {"heat-rate", SlabDrive::heat_rate},
-      {"velocity-exchange", SlabDrive::velocity_exchange},
-      {"energy-exchange", SlabDrive::energy_exchange},
-      {"temperatures", SlabDrive::temperatures}};
-  return drives;
-}
-
-const std::vector<std::pair<const char*, double HeatSlabs::*>>& slab_numbers() {
-  static const std::vector<std::pair<const char*, double HeatSlabs::*>> numbers = {
-      {"rate", &HeatSlabs::rate},
-      {"hot_temperature", &HeatSlabs::hot_temperature},
-      {"cold_temperature", &HeatSlabs::cold_temperature},
-      {"period", &HeatSlabs::period}};
-  return numbers;
-}
-
-ValueRule slabs_rule() {
-  std::vector<std::string> drives;
-  for (const auto& [name, drive] : slab_drives()) drives.emplace_back(name);
-  const auto place = ValueRule::not_negative(), positive = ValueRule::positive();
-  return ValueRule::object(
-      "heat_slabs",
-      {{"drive", ValueRule::word(drives), true, "what drives the heat"},
-       {"axis", ValueRule::word({"x", "y", "z"}), true, "that the slabs are normal to"},
-       {"hot",
-        ValueRule::object("a slab", {{"from", place, true, "where it begins"},
-                                     {"to", positive, true, "where it ends"}}),
-        true, "the slab that receives"},
-       {"cold",
-        ValueRule::object("a slab", {{"from", place, true, "where it begins"},
-                                     {"to", positive, true, "where it ends"}}),
-        true, "the slab that gives"},
-       {"rate", positive, false, "of heat-rate: energy per unit time"},
-       {"hot_temperature", positive, false, "of temperatures"},
-       {"cold_temperature", positive, false, "of temperatures"},
-       {"period", place, false, "time from one exchange to the next; 0: every step"}});
-}
-
-json heat_slabs_of(const Scene& scene) {
-  if (!scene.heat_slabs) return nullptr;
-  const HeatSlabs& slabs = *scene.heat_slabs;
-  json object = {{"axis", std::string(1, static_cast<char>('x' + slabs.axis))},
-                 {"hot", {{"from", slabs.hot.from}, {"to", slabs.hot.to}}},
-                 {"cold", {{"from", slabs.cold.from}, {"to", slabs.cold.to}}}};
-  for (const auto& [name, drive] : slab_drives()) {
-    if (drive == slabs.drive) object["drive"] = name;
-  }
-  for (const auto& [name, member] : slab_numbers()) {
-    if (slabs.*member != 0) object[name] = slabs.*member;
-  }
-  return object;
-}
-
-void set_heat_slabs(Scene& scene, const json& object) {
-  HeatSlabs slabs;
-  for (const auto& [name, drive] : slab_drives()) {
-    if (object["drive"] == name) slabs.drive = drive;
-  }
-  slabs.axis = object["axis"].get<std::string>()[0] - 'x';
-  const auto slab = [](const json& range) {
-    return Slab{range["from"].get<double>(), range["to"].get<double>()};
-  };
-  slabs.hot = slab(object["hot"]);
-  slabs.cold = slab(object["cold"]);
-  for (const auto& [name, member] : slab_numbers()) {
-    if (object.contains(name)) slabs.*member = object[name].get<double>();
-  }
-  scene.heat_slabs = slabs;
-}
-
-json species_of(const Scene& scene) {
-  json list = json::array();
-  for (std::size_t n = 0; n < scene.further_shares.size(); ++n) {
-    const auto& species = scene.fluid.further_species[n];
-    list.push_back({{"share", scene.further_shares[n]},
-                    {"mass", species.mass},
-                    {"heat_capacity", species.heat_capacity / scene.fluid.heat_capacity}});
-  }
-  return list;
-}
-
-SpeciesParameters first_species(const FluidParameters& fluid) {
-  return {fluid.mass, fluid.heat_capacity, fluid.heat_capacity_slope, fluid.equation_of_state};
-}
-
-/// At every temperature.
-void multiply_heat_capacity(double factor, SpeciesParameters& species) {
-  species.heat_capacity *= factor;
-  species.heat_capacity_slope *= factor;
-  for (auto& point : species.equation_of_state) point.internal_energy *= factor;
-}
+namespace {
 
 json points_of(const Scene& scene) {
   json list = json::array();
@@ -184,57 +39,6 @@ void set_points(Scene& scene, const json& list) {
   for (const auto& point : list) {
     scene.fluid.equation_of_state.push_back({point[0].get<double>(), point[1].get<double>()});
   }
-}
-
-void set_species(Scene& scene, const json& list) {
-  scene.further_shares.clear();
-  scene.fluid.further_species.clear();
-  for (const auto& object : list) {
-    scene.further_shares.push_back(object["share"].get<double>());
-    auto species = first_species(scene.fluid);
-    if (object.contains("mass")) species.mass = object["mass"].get<double>();
-    if (object.contains("heat_capacity")) {
-      multiply_heat_capacity(object["heat_capacity"].get<double>(), species);
-    }
-    scene.fluid.further_species.push_back(species);
-  }
-}
-
-const std::vector<std::pair<const char*, std::optional<double> PairParameters::*>>&
-pair_coefficients() {
-  static const std::vector<std::pair<const char*, std::optional<double> PairParameters::*>> all = {
-      {"repulsion", &PairParameters::repulsion},
-      {"friction", &PairParameters::friction},
-      {"conduction", &PairParameters::conduction}};
-  return all;
-}
-
-json species_pairs_of(const Scene& scene) {
-  json list = json::array();
-  for (const auto& pair : scene.fluid.pairs) {
-    json object = {{"first", pair.a}, {"second", pair.b}};
-    for (const auto& [name, member] : pair_coefficients()) {
-      if (pair.*member) object[name] = *(pair.*member);
-    }
-    list.push_back(object);
-  }
-  return list;
-}
-
-void set_species_pairs(Scene& scene, const json& list) {
-  scene.fluid.pairs.clear();
-  for (const auto& object : list) {
-    PairParameters pair{static_cast<unsigned>(to_integer(object["first"])),
-                        static_cast<unsigned>(to_integer(object["second"]))};
-    for (const auto& [name, member] : pair_coefficients()) {
-      if (object.contains(name)) pair.*member = object[name].get<double>();
-    }
-    scene.fluid.pairs.push_back(pair);
-  }
-}
-
-Vector to_vector(const json& list) {
-  return {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()};
 }
 
 double heat_capacity_unit(const Scene& scene) {
@@ -307,19 +111,10 @@ void set_velocities(Scene& scene, const json& list) {
   if (!list.empty()) scene.initial_state = InitialState::given;
 }
 
-std::string_view of_fluids(const Scene& scene) {
-  return scene.layout == Layout::fluid ? "" : "isolated pairs stand on a lattice of their own";
-}
 std::string_view of_placed_fluids(const Scene& scene) {
   const bool equilibrium =
       scene.fluid.has_repulsion() && scene.fluid.boltzmann > 0 && starts_in_law(scene);
   return equilibrium ? "a fluid with repulsion starts from its equilibrium" : of_fluids(scene);
-}
-std::string_view of_slabs(const Scene& scene) {
-  return scene.heat_slabs ? of_fluids(scene) : "there are no heat slabs";
-}
-std::string_view of_species(const Scene& scene) {
-  return scene.fluid.further_species.empty() ? "there is one species alone" : "";
 }
 std::string_view of_pairs(const Scene& scene) {
   return scene.layout == Layout::pairs ? "" : "only isolated pairs have a distance";
@@ -450,42 +245,6 @@ const std::vector<std::string_view>& rare_keys() {
                                                      "friction_temperature_exponent",
                                                      "conduction_temperature_exponent"};
   return rare;
-}
-
-std::vector<SceneKey> keys_of_the_surroundings() {
-  return {
-      {"sides", ValueRule::vector(), "sides [x, y, z] of the box, relative to each other",
-       [](const Scene& scene) { return to_list(scene.sides); },
-       [](Scene& scene, const json& value) { scene.sides = to_vector(value); }, of_fluids},
-      {"walls", walls_rule(), "walls of the box; periodic where there are none", walls_of,
-       set_walls, of_fluids},
-      {"gravity", ValueRule::vector(), "acceleration [x, y, z], along one axis that has walls",
-       [](const Scene& scene) { return to_list(scene.gravity); },
-       [](Scene& scene, const json& value) { scene.gravity = to_vector(value); }, of_fluids},
-      {"heat_slabs", slabs_rule(), "two slabs that drive heat from one to the other", heat_slabs_of,
-       set_heat_slabs, of_slabs},
-  };
-}
-
-std::vector<SceneKey> keys_of_the_species() {
-  return {
-      {"species",
-       ValueRule::objects("a species",
-                          {{"share", ValueRule::positive(), true, "of all particles, below 1"},
-                           {"mass", ValueRule::positive(), false, "mass m of a particle"},
-                           {"heat_capacity", ValueRule::positive(), false,
-                            "heat capacity in units of the first species', at all temperatures"}}),
-       "species beside the first, 0, numbered from 1", species_of, set_species, of_fluids},
-      {"species_pairs",
-       ValueRule::objects("a pair of species",
-                          {{"first", ValueRule::integer(0, 255), true, "number of a species"},
-                           {"second", ValueRule::integer(0, 255), true, "number of a species"},
-                           {"repulsion", ValueRule::not_negative(), false, "of such pairs"},
-                           {"friction", ValueRule::not_negative(), false, "of such pairs"},
-                           {"conduction", ValueRule::not_negative(), false, "of such pairs"}}),
-       "coefficients of pairs of species where they are not the fluid's", species_pairs_of,
-       set_species_pairs, of_species},
-  };
 }
 
 std::vector<SceneKey> keys_of_the_laws() {

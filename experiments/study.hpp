@@ -52,11 +52,12 @@ nlohmann::json to_json(const Study& study);
 nlohmann::json to_json(const Scene& scene);
 nlohmann::json to_json(const Options& options);
 
-/// JSON Schemas (draft 7) of study, result, comparison and papers files; the study's from the same
-/// table as the reader.
+/// JSON Schemas (draft 7) of study, result, comparison, judgement and papers files; the study's
+/// from the same table as the reader.
 nlohmann::json study_schema();
 nlohmann::json result_schema();
 nlohmann::json comparison_schema();
+nlohmann::json judgement_schema();
 nlohmann::json papers_schema();
 
 }  // namespace driftless

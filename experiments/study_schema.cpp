@@ -39,6 +39,8 @@ json result_schema() { return json::parse(result_schema_text()); }
 
 json comparison_schema() { return json::parse(comparison_schema_text()); }
 
+json judgement_schema() { return json::parse(judgement_schema_text()); }
+
 json papers_schema() { return json::parse(papers_schema_text()); }
 
 }  // namespace driftless

@@ -40,6 +40,10 @@ class CellGrid {
   const Vector& lengths() const { return lengths_; }
   /// How many tiles along each axis: one, or an even number. Tile t begins with cell_of(axis, t).
   const Eigen::Vector3i& tiles() const { return tiles_; }
+  /// How many there are of a colour.
+  unsigned tiles_at_once() const {
+    return static_cast<unsigned>(((tiles_.array() + 1) / 2).prod());
+  }
   int cell_of(int axis, int tile) const { return tile * count_[axis] / tiles_[axis]; }
   /// Particles of cell c are begin(c) to begin(c + 1); along x cells follow each other.
   std::uint32_t begin(std::size_t cell) const { return begin_[cell]; }

@@ -55,12 +55,13 @@ void System::check_species() const {
 }
 
 void System::set_threads(unsigned count) {
-  threads_ = Threads(count);
+  wanted_threads_ = count;
   cut_cells();
 }
 
 void System::cut_cells() {
   cells_ = CellGrid(box_, fluid_.range(), size());
+  threads_ = Threads(std::min(wanted_threads_, cells_.tiles_at_once()));
   pairs_ = PairBlocks(cells_, fluid_.range(), threads_.count(), fluid_.species());
   contacts_ = BoundaryContacts();
   passes_.resize(threads_.count());

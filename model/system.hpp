@@ -60,7 +60,8 @@ class System {
   /// unless they follow().
   Places order_storage();
 
-  /// How many threads work on this system; results are the same bits for any number.
+  /// How many threads work on this system, if there is work for as many at once; results are the
+  /// same bits for any number.
   void set_threads(unsigned count);
 
   /// Has the passes over pairs measured from now on, at the price of looking at the clock.
@@ -260,6 +261,7 @@ class System {
   State state_;
   Noise noise_;
   bool frozen_;
+  unsigned wanted_threads_ = 1;
   Threads threads_;
   CellGrid cells_;
   PairBlocks pairs_;

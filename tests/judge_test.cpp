@@ -6,6 +6,8 @@
 
 #include "experiments/files.hpp"
 #include "experiments/judge/judge.hpp"
+#include "experiments/study.hpp"
+#include "tests/json_schema.hpp"
 #include "tests/scratch_folder.hpp"
 
 /// The bench itself: parts that are kept, conclusions that are fit for a report.
@@ -92,6 +94,10 @@ TEST(Judge, WritesAReportOfEveryMethod) {
   const auto read = read_judgement(folder.path());
   ASSERT_TRUE(read);
   EXPECT_EQ(*read, judgement);
+  EXPECT_EQ(schema_errors(judgement_schema(), *read), std::vector<std::string>());
+  auto wrong = *read;
+  wrong["methods"][0]["conclusions"].front()["verdict"] = "perhaps";
+  EXPECT_NE(schema_errors(judgement_schema(), wrong), std::vector<std::string>());
   EXPECT_FALSE(read_judgement(folder.path() / "parts"));
   write_atomically(folder.path() / "judgement.json", "{\"format\": \"another\"}");
   EXPECT_THROW(read_judgement(folder.path()), InputError);

@@ -307,12 +307,19 @@ TEST(PairGroups, ThatShareAParticleWouldBeNoticed) {
 TEST(CellGrid, PutsNeighbouringTilesOfEveryColourSideBySide) {
   const CellGrid cells(Box{Vector::Constant(10)}, 1, 3000);
   ASSERT_EQ(cells.tiles(), Eigen::Vector3i(1, 4, 4));
+  EXPECT_EQ(cells.tiles_at_once(), 4U);
   for (int z = 0; z < 10; ++z) {
     for (int y = 0; y < 10; ++y) {
       const std::size_t quarter = (z >= 5 ? 2 : 0) + (y >= 5 ? 1 : 0);
       for (int x = 0; x < 10; ++x) EXPECT_EQ(cells.index(x, y, z) / 250, quarter);
     }
   }
+}
+
+TEST(CellGrid, HasNoWorkForASecondThreadInASmallBox) {
+  EXPECT_EQ(CellGrid(Box{Vector::Constant(7)}, 1, 1000).tiles_at_once(), 1U);
+  EXPECT_EQ(CellGrid(Box{Vector::Constant(3)}, 1, 80).tiles_at_once(), 1U);
+  EXPECT_EQ(CellGrid(Box{{30, 10, 10}}, 1, 9000).tiles_at_once(), 14U);
 }
 
 TEST(PairBlocks, OfOneColourShareNoParticle) {

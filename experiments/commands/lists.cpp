@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -51,17 +52,16 @@ void print_scenes(bool as_json) {
   for (const auto& preset : presets()) {
     fmt::print("{}\n  {}\n  source: {}\n", preset.name, preset.title, preset.source);
     const auto values = scene_parameters(preset.scene);
-    // A start that is given takes keys that mean nothing to the preset's own.
-    Scene given = preset.scene;
-    given.initial_state = InitialState::given;
-    const auto of_given = scene_parameters(given);
     for (const auto& key : scene_keys()) {
-      const std::string name(key.name);
-      if (!values.contains(name) && !of_given.contains(name)) continue;
-      fmt::print("  {:<24} {:<24} {} ({})\n", name,
-                 values.contains(name) ? values[name].dump() : "-", key.meaning,
-                 key.rule.allowed());
+      if (const auto value = values.find(key.name); value != values.end()) {
+        fmt::print("    {:<30} {}\n", key.name, value->dump());
+      }
     }
+  }
+  fmt::print("keys that a scene may have beside its preset\n");
+  for (const auto& key : scene_keys()) {
+    if (key.name == "preset") continue;
+    fmt::print("  {:<32} {} ({})\n", key.name, key.meaning, key.rule.allowed());
   }
 }
 
@@ -71,12 +71,13 @@ void print_observables() {
   }
 }
 
-void print_schema(const std::string& kind) {
-  const json schema = kind == "study"    ? study_schema()
-                      : kind == "result" ? result_schema()
-                      : kind == "papers" ? papers_schema()
-                                         : comparison_schema();
-  fmt::print("{}\n", schema.dump(2));
+const std::map<std::string, json (*)()>& schemas() {
+  static const std::map<std::string, json (*)()> all = {{"study", study_schema},
+                                                        {"result", result_schema},
+                                                        {"comparison", comparison_schema},
+                                                        {"judgement", judgement_schema},
+                                                        {"papers", papers_schema}};
+  return all;
 }
 
 }  // namespace
@@ -90,10 +91,10 @@ void add_lists(CLI::App& app) {
   app.add_subcommand("observables", "list the observables")->callback(print_observables);
   auto* schema = app.add_subcommand("schema", "print the JSON Schema of a file format");
   const auto kind = std::make_shared<std::string>();
-  schema->add_option("kind", *kind, "study, result, comparison or papers")
+  schema->add_option("kind", *kind, "study, result, comparison, judgement or papers")
       ->required()
-      ->check(CLI::IsMember({"study", "result", "comparison", "papers"}));
-  schema->callback([kind] { print_schema(*kind); });
+      ->check(CLI::IsMember(schemas()));
+  schema->callback([kind] { fmt::print("{}\n", schemas().at(*kind)().dump(2)); });
 }
 
 }  // namespace driftless::commands

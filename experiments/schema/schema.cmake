@@ -1,6 +1,6 @@
-# Puts the schemas of results, comparisons and reproduced experiments into the library. Included from the folder above, after
+# Puts the schemas of the files that the program writes into the library. Included from the folder above, after
 # driftless_experiments exists.
-foreach(kind result comparison papers)
+foreach(kind result comparison judgement papers)
   set(schema_file ${CMAKE_CURRENT_LIST_DIR}/${kind}.schema.json)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${schema_file})
   file(READ ${schema_file} SCHEMA)

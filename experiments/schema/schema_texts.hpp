@@ -4,10 +4,10 @@
 
 namespace driftless {
 
-/// The texts of result.schema.json, comparison.schema.json and papers.schema.json, which the build
-/// puts into the program.
+/// The texts of the files *.schema.json, which the build puts into the program.
 std::string_view result_schema_text();
 std::string_view comparison_schema_text();
+std::string_view judgement_schema_text();
 std::string_view papers_schema_text();
 
 }  // namespace driftless
