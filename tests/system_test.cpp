@@ -550,11 +550,14 @@ TEST(Trials, AreSeenByWhatLeadsToThem) {
       Exchange by_motion, by_change;
       system.accumulate(trial, everything_of_a_trial, by_motion, 1);
       system.accumulate(change, everything_of_a_trial, by_change, 1);
-      EXPECT_EQ(by_motion.momentum, by_change.momentum) << particles;
-      EXPECT_EQ(by_motion.energy, by_change.energy) << particles;
+      // To rounding: the processor's variant of the pairs may fuse what the loop above rounds.
+      for (std::size_t i = 0; i < system.size(); ++i) {
+        EXPECT_NEAR((by_motion.momentum[i] - by_change.momentum[i]).norm(), 0, 1e-10) << particles;
+        EXPECT_NEAR(by_motion.energy[i], by_change.energy[i], 1e-10) << particles;
+      }
       system.accumulate(change, everything_of_a_trial, change, 1);
-      EXPECT_EQ(by_motion.momentum, change.momentum) << particles;
-      EXPECT_EQ(by_motion.energy, change.energy) << particles;
+      EXPECT_EQ(by_change.momentum, change.momentum) << particles;
+      EXPECT_EQ(by_change.energy, change.energy) << particles;
     }
   }
 }
