@@ -84,6 +84,29 @@ TEST(Compare, AnEffectBelowTheMinimumIsTheSameHoweverSure) {
   EXPECT_EQ(first_test(compare(was, is, {.minimum_effect = 0.0001}))["verdict"], "worse");
 }
 
+TEST(Compare, WhatIsMostlyBlindIsNotTheSame) {
+  const json was = result_of({{.method = "one"}});
+  json is = was;
+  auto& observables = is["cells"][0]["observables"];
+  ASSERT_EQ(observables.size(), 3U);
+  const auto spoil = [](json& entry) {
+    entry["error"] = 1000 * std::max(1e-3, entry["error"].get<double>());
+  };
+  auto entry = observables.begin();
+  spoil(*entry);
+  EXPECT_EQ(compare(was, is)["verdict"], "same");
+  spoil(*++entry);
+  const json comparison = compare(was, is);
+  EXPECT_EQ(comparison["verdict"], "too_little_data");
+  EXPECT_TRUE(schema_errors(comparison_schema(), comparison).empty());
+  EXPECT_TRUE(
+      comparison_text(comparison)
+          .ends_with("\nNEW cannot be called the same as BASE, nor worse, at a family level of "
+                     "1e-05 over 3 tests: 2 of them have too little data; more replicas would "
+                     "tell.\n"))
+      << comparison_text(comparison);
+}
+
 TEST(Compare, TooLittleDataIsWhatCannotSeeTheWantedEffect) {
   EXPECT_EQ(verdict("pressure", measured(1, 0.01), measured(1.01, 0.01)), "too_little_data");
   // One test: +- 4.42 standard errors at 1e-5, and 1.645 for the power.
@@ -143,6 +166,12 @@ TEST(Compare, FailuresAreComparedExactly) {
   EXPECT_EQ(of(0, 16, 16), "worse");
   EXPECT_EQ(of(16, 0, 16), "better");
   EXPECT_EQ(of(0, 4, 16), "same");
+  EXPECT_EQ(compare(failing(0, 16), failing(4, 16))["verdict"], "same");
+  // 0.0008 by chance alone: neither the same nor, among many cells, worse.
+  const json doubtful = compare(failing(0, 16), failing(9, 16));
+  EXPECT_EQ(first_test(doubtful)["verdict"], "too_little_data");
+  EXPECT_EQ(doubtful["verdict"], "too_little_data");
+  EXPECT_EQ(compare(failing(9, 16), failing(0, 16))["verdict"], "same");
   EXPECT_EQ(of(0, 4, 4), "too_little_data");
   EXPECT_TRUE(compare(failing(0, 16), failing(0, 16))["cells"][0]["tests"].empty());
 }
@@ -177,12 +206,23 @@ TEST(Compare, RunsOfAnotherProtocolCannotBeCompared) {
   EXPECT_EQ(complaint([](json& r) { r["provenance"]["seed"] = 8; }), "");
 }
 
-TEST(Compare, AGateMissesACellThatVanished) {
+TEST(Compare, AGateMissesWhatVanished) {
   const auto vanish = [](json& result) { result["cells"].erase(1); };
   const auto refuse = [](json& result) { result["cells"][1]["status"] = "not_applicable"; };
   EXPECT_EQ(complaint(vanish), "");
   EXPECT_EQ(complaint(vanish, true), "NEW lacks 1 of the 2 cells of BASE: scene, other, step 0.01");
   EXPECT_EQ(complaint(refuse, true), "NEW lacks 1 of the 2 cells of BASE: scene, other, step 0.01");
+  const auto forget = [](json& result) {
+    result["cells"][1]["observables"].erase("kinetic_temperature");
+  };
+  EXPECT_EQ(complaint(forget), "");
+  EXPECT_EQ(complaint(forget, true),
+            "NEW lacks kinetic_temperature in the cell scene, other, step 0.01");
+  const auto break_all = [](json& result) {
+    result["cells"][1]["observables"] = json::object();
+    result["cells"][1]["failed_replicas"] = result["cells"][1]["replicas"];
+  };
+  EXPECT_EQ(complaint(break_all, true), "");
   json less = result_of({{.method = "one"}});
   const json more = result_of({{.method = "one"}, {.method = "other"}});
   EXPECT_EQ(compare(more, less)["missing"].size(), 1U);

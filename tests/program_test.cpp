@@ -211,7 +211,9 @@ TEST_F(Program, CompareEndsWithWhatItFound) {
   ASSERT_EQ(call("run -q --seed 99 " + good_study() + " -o " + after).code, 0);
   const auto kept = (folder_ / "kept.json").string(), record = (folder_ / "record.json").string();
   ASSERT_EQ(call("keep " + before + " " + kept).code, 0);
-  const auto same = call("compare --gate --json " + record + " " + kept + " " + after);
+  EXPECT_EQ(call("compare --gate --wanted-effect 0 " + kept + " " + after).code, 2) << "blind";
+  const auto same =
+      call("compare --gate --wanted-effect 1 --json " + record + " " + kept + " " + after);
   EXPECT_EQ(same.code, 0) << same.text;
   EXPECT_NE(same.text.find("NEW is the same as BASE, at a family level of 1e-05"),
             std::string::npos)

@@ -55,7 +55,8 @@ int compare_files(const ComparedFiles& files, CompareOptions options) {
   }
   if (!files.json.empty()) write_atomically(files.json, comparison.dump(1) + "\n");
   fmt::print("{}", comparison_text(comparison));
-  return files.gate && comparison["verdict"] == "worse" ? 1 : 0;
+  if (!files.gate) return 0;
+  return comparison["verdict"] == "worse" ? 1 : comparison["verdict"] == "too_little_data" ? 2 : 0;
 }
 
 void keep_numbers(const std::string& result, const std::string& file) {
@@ -111,8 +112,10 @@ void add_compare(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("new", arguments->files.changed, "result.json or its folder: as it is")
       ->required();
-  command->add_flag("--gate", arguments->files.gate,
-                    "exit code 1 if anything is worse, 2 also if a cell of BASE is missing");
+  command->add_flag(
+      "--gate", arguments->files.gate,
+      "exit code 1 if anything is worse; 2 also if anything of BASE is missing in NEW or most "
+      "tests have too little data");
   command->add_option("--json", arguments->files.json, "write the comparison to this file too");
   command->add_option("--only", arguments->options.method, "this method alone");
   command

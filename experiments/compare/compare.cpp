@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "experiments/compare/common_cells.hpp"
 #include "experiments/compare/cost_change.hpp"
@@ -59,7 +60,7 @@ class Comparison {
   json record();
 
  private:
-  void require_all_cells() const;
+  void require_all() const;
   void add_cell(const CommonCell& cell);
   void add_observable(const std::string& observable, const CommonCell& cell, const Run& run);
   void add_failures(const CommonCell& cell);
@@ -70,20 +71,38 @@ class Comparison {
     return options_.family_level / static_cast<double>(std::max<std::size_t>(1, tests_.size()));
   }
   void conclude(json& record) const;
+  std::string verdict(const json& counts) const;
 
   const json &base_, &changed_;
   const CompareOptions& options_;
   CommonCells cells_;
   json records_ = json::array();
   std::vector<Test> tests_;
+  bool may_fail_more_ = false;  ///< somewhere replicas fail that did not, without certainty
 };
 
-void Comparison::require_all_cells() const {
-  if (!options_.all_cells || cells_.missing.empty()) return;
-  const auto count = cells_.missing.size();
-  throw NotComparable(
-      fmt::format("NEW lacks {} of the {} cells of BASE{}: {}", count, count + cells_.common.size(),
-                  count > 1 ? ", the first of them" : "", cell_name(*cells_.missing.front())));
+/// An observable of BASE that NEW should have and lacks; empty if there is none.
+std::string missing_observable(const CommonCell& cell) {
+  if ((*cell.changed)["failed_replicas"] == (*cell.changed)["replicas"]) return "";
+  for (const auto& [observable, entry] : (*cell.base)["observables"].items()) {
+    if (!(*cell.changed)["observables"].contains(observable)) return observable;
+  }
+  return "";
+}
+
+void Comparison::require_all() const {
+  if (!options_.all_cells) return;
+  if (const auto count = cells_.missing.size(); count > 0) {
+    throw NotComparable(fmt::format(
+        "NEW lacks {} of the {} cells of BASE{}: {}", count, count + cells_.common.size(),
+        count > 1 ? ", the first of them" : "", cell_name(*cells_.missing.front())));
+  }
+  for (const auto& cell : cells_.common) {
+    if (const auto observable = missing_observable(cell); !observable.empty()) {
+      throw NotComparable(
+          fmt::format("NEW lacks {} in the cell {}", observable, cell_name(*cell.changed)));
+    }
+  }
 }
 
 void Comparison::add_observable(const std::string& observable, const CommonCell& cell,
@@ -178,6 +197,10 @@ void Comparison::judge_failures(Test& test, bool significant) {
   if (significant && (more || fewer)) {
     verdict = more ? "worse" : "better";
     test.record["reason"] = more ? "more replicas fail" : "fewer replicas fail";
+  } else if (more && test.probability <= options_.failure_level) {
+    verdict = "too_little_data";
+    test.record["reason"] = "more replicas fail, too few to be certain";
+    may_fail_more_ = true;
   } else if ((more || fewer) && surest > level_of_one()) {
     verdict = "too_little_data";
     test.record["reason"] = "too few replicas to tell how many fail";
@@ -201,24 +224,31 @@ std::string worst_of(const json& tests) {
   return "same";
 }
 
-/// Counts of verdicts, the smallest effect that the tests see, and the verdict of the whole.
+/// Of the whole, from the counts of tests.
+std::string Comparison::verdict(const json& counts) const {
+  const auto of = [&](const char* verdict) { return counts[verdict].get<std::size_t>(); };
+  const auto blind = of("too_little_data");
+  const auto sighted = of("same") + of("better") + of("worse");
+  if (of("worse") > 0) return "worse";
+  if (blind > sighted || may_fail_more_) return "too_little_data";
+  return of("better") > 0 ? "better" : "same";
+}
+
+/// Counts of verdicts and the verdict of the whole.
 void Comparison::conclude(json& record) const {
-  json counts = {{"same", 0}, {"better", 0}, {"worse", 0}, {"too_little_data", 0}};
-  json of_cells = counts;
-  for (auto& cell : record["cells"]) {
-    of_cells[cell["verdict"].get<std::string>()] =
-        of_cells[cell["verdict"].get<std::string>()].get<int>() + 1;
-    for (const auto& test : cell["tests"]) {
-      auto& count = counts[test["verdict"].get<std::string>()];
-      count = count.get<int>() + 1;
-    }
+  std::map<std::string, int> tests = {
+      {"same", 0}, {"better", 0}, {"worse", 0}, {"too_little_data", 0}};
+  auto cells = tests;
+  for (const auto& cell : record["cells"]) {
+    ++cells[cell["verdict"]];
+    for (const auto& test : cell["tests"]) ++tests[test["verdict"]];
   }
-  record["counts"] = {{"tests", counts}, {"cells", of_cells}};
-  record["verdict"] = of_cells["worse"] > 0 ? "worse" : of_cells["better"] > 0 ? "better" : "same";
+  record["counts"] = {{"tests", tests}, {"cells", cells}};
+  record["verdict"] = verdict(record["counts"]["tests"]);
 }
 
 json Comparison::record() {
-  require_all_cells();
+  require_all();
   for (const auto& cell : cells_.common) add_cell(cell);
   std::vector<double> probabilities;
   for (const auto& test : tests_) probabilities.push_back(test.probability);

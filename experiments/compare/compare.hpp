@@ -11,7 +11,8 @@ struct CompareOptions {
   double family_level = 1e-5;     ///< chance of one false "better" or "worse" among all tests
   double minimum_effect = 0.001;  ///< smaller differences are "same", however sure
   double wanted_effect = 0.02;    ///< what a test must be able to see, or it has too little data
-  bool all_cells = false;         ///< every cell of BASE must stand in NEW, as a gate demands
+  double failure_level = 1e-3;    ///< more failures as unlikely as this, alone, leave a doubt
+  bool all_cells = false;         ///< all that BASE measured must stand in NEW, as a gate demands
   std::string method = {};        ///< this method alone; all if empty
 };
 
@@ -59,13 +60,18 @@ class NotComparable : public InputError {
 /// Total energy and momentum that BASE keeps to rounding (1e-9) and NEW does not (1e-7) are worse
 /// without a test, and the other way round better.
 /// A cell has the worst verdict of its tests; in the order worse, better, too_little_data, same.
+/// The whole is "worse" if a test is; else "too_little_data" if more than half of the tests have
+/// too little data, or if in a cell more replicas fail than chance alone would let at the failure
+/// level, which is no certainty among many cells but no equality either; else "better" if a test
+/// is; else "same".
 ///
 /// Cost is compared between runs on one processor with the same instructions, outside the tests and
 /// the verdict: machines are busy at times.
 ///
 /// Throws NotComparable if the durations or the scenes' parameters differ, no cell is common, or
-/// with `all_cells` if NEW lacks a cell that BASE has: a method that vanished is neither better nor
-/// worse, and a gate that passed it would guard nothing.
+/// with `all_cells` if NEW lacks a cell that BASE has, or an observable of a cell in which not all
+/// replicas fail: what vanished is neither better nor worse, and a gate that passed it would guard
+/// nothing.
 nlohmann::json compare(const nlohmann::json& base, const nlohmann::json& changed,
                        const CompareOptions& options = {});
 

@@ -22,7 +22,7 @@ std::string effect_text(const json& test, const char* key) {
 
 std::string number(const json& value) { return fmt::format("{:.6g}", value.get<double>()); }
 
-/// "better" and "worse" first; of failures or conservation there is no error.
+/// A row of the table of changes; of failures or conservation there is no error.
 std::vector<std::string> row_of(const json& cell, const json& test) {
   const bool counted = test["kind"] == "failures";
   const auto side = [&](const char* key) {
@@ -61,13 +61,18 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   return text + "\n";
 }
 
+/// Of what has too little data, only failures are listed.
+bool may_matter(const json& test) {
+  return test["verdict"] != "too_little_data" || test["kind"] == "failures";
+}
+
 std::string changes(const json& comparison) {
   std::vector<std::vector<std::string>> rows = {{"verdict", "cell", "observable", "BASE", "NEW",
                                                  "difference", "effect", "adjusted p", "why"}};
-  for (const char* verdict : {"worse", "better"}) {
+  for (const char* verdict : {"worse", "better", "too_little_data"}) {
     for (const auto& cell : comparison["cells"]) {
       for (const auto& test : cell["tests"]) {
-        if (test["verdict"] == verdict) rows.push_back(row_of(cell, test));
+        if (test["verdict"] == verdict && may_matter(test)) rows.push_back(row_of(cell, test));
       }
     }
   }
@@ -126,9 +131,17 @@ std::string cost_lines(const json& cost) {
 std::string sentence(const json& comparison) {
   const auto& cells = comparison["counts"]["cells"];
   const int worse = cells["worse"], better = cells["better"], blind = cells["too_little_data"];
+  const int blind_tests = comparison["counts"]["tests"]["too_little_data"];
   const std::string level =
       fmt::format("at a family level of {:g} over {} tests",
                   comparison["family_level"].get<double>(), comparison["tests"].get<std::size_t>());
+  if (comparison["verdict"] == "too_little_data") {
+    return fmt::format(
+        "NEW cannot be called the same as BASE, nor worse, {}: {} of them have too little data; "
+        "more "
+        "replicas would tell.\n",
+        level, blind_tests);
+  }
   std::string text = fmt::format("NEW is {} BASE", worse > 0    ? "worse than"
                                                    : better > 0 ? "better than"
                                                                 : "the same as");
