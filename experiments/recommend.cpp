@@ -9,6 +9,8 @@
 #include <optional>
 
 #include "experiments/answer_words.hpp"
+#include "experiments/judge/judge.hpp"
+#include "experiments/judge/trade_result.hpp"
 #include "experiments/location.hpp"
 #include "experiments/nearest.hpp"
 #include "experiments/observables.hpp"
@@ -116,6 +118,18 @@ std::vector<std::string> scenes_of(const json& result) {
   return names;
 }
 
+/// Of a result or a judgement.
+json read_cells(const std::string& path) {
+  const auto judgement = judge::read_judgement(path);
+  if (!judgement) return read_result(path);
+  json cells = judge::trade_as_result(*judgement);
+  if (!cells["cells"].empty()) return cells;
+  throw InputError(fmt::format(
+      "{}: its judgement has no trade of error against cost; allowed is one with the examination "
+      "limits",
+      printable(path)));
+}
+
 }  // namespace
 
 std::string recommend(const Question& question) {
@@ -129,7 +143,7 @@ std::string recommend(const Question& question) {
   std::string text;
   bool found = false;
   for (const auto& path : question.results) {
-    const json result = read_result(path);
+    const json result = read_cells(path);
     for (const auto& scene : scenes_of(result)) {
       known.push_back(scene);
       if (!question.scene.empty() && scene != question.scene) continue;

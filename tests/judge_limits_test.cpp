@@ -9,6 +9,7 @@
 #include "experiments/judge/limit_fit.hpp"
 #include "experiments/judge/limit_scenes.hpp"
 #include "experiments/judge/trade.hpp"
+#include "experiments/judge/trade_result.hpp"
 #include "tests/planted_schemes.hpp"
 
 namespace driftless::judge {
@@ -192,6 +193,48 @@ TEST(Trade, TheFrontIsOfAllMethodsByTheirUpperBounds) {
   }
   EXPECT_EQ(seen,
             (std::vector<std::string>{"one front", "two front", "two dominated", "one front"}));
+}
+
+// As a result the same points are cells, whose bounds hold for all of them at once.
+TEST(Trade, IsAnsweredFromLikeAResult) {
+  json judgement = {{"methods",
+                     {method_with("sure", {{1, 0.3, 0.2, 0.4}, {4, 0.1, 0.05, 0.15}}),
+                      method_with("wrong", {{2, 0.1, 0, 0.2}, {3, 0.5, 0.4, 0.6}}),
+                      method_with("other", {{9, 0.1, 0, 0.2}})}}};
+  judgement["trade"] = trade_front(judgement);
+  const auto find = [&](std::size_t method, const char* verdict, bool claimed, const char* scene) {
+    judgement["methods"][method]["conclusions"]["limits"]["findings"] = {
+        {{"subject", std::string("the b, ") + scene}, {"verdict", verdict}, {"claimed", claimed}}};
+  };
+  find(0, "fails", false, "another");
+  find(1, "fails", true, "a");
+  find(2, "not_resolved", false, "a");
+  const json result = trade_as_result(judgement);
+  EXPECT_EQ(result["scenes"], (json{{{"name", "a"}}}));
+  // Both steps of a method of the test are 0.1: one cell.
+  ASSERT_EQ(result["cells"].size(), 3U);
+  const auto& cells = result["cells"];
+  EXPECT_EQ(cells[0]["method"], "sure");
+  EXPECT_EQ(cells[0]["consistent"], true);
+  EXPECT_EQ(cells[1]["consistent"], false);
+  EXPECT_EQ(cells[2]["consistent"], false);
+  EXPECT_EQ(cells[2]["cost"]["core_seconds_per_time"], 9);
+  // One of five cells may fail with 1 %.
+  const double widening = 2.3263479 / 1.9599640;
+  const auto& deviation = cells[2]["observables"]["b"]["deviation"];
+  EXPECT_NEAR(deviation["bound"].get<double>(), 0.1 + widening * 0.1, 1e-6);
+  EXPECT_NEAR(deviation["resolution"].get<double>(), widening * 0.1, 1e-6);
+}
+
+TEST(Trade, OfADistanceIsBoundedByItsSquare) {
+  json judgement = {{"methods", {method_with("one", {{1, 0.3, 0.2, 0.5}})}}};
+  judgement["trade"] = trade_front(judgement);
+  judgement["trade"][0]["observable"] = "momentum_distance";
+  // One cell alone: its bound is the end of its interval.
+  const json result = trade_as_result(judgement);
+  const auto& deviation = result["cells"][0]["observables"]["momentum_distance"]["deviation"];
+  EXPECT_NEAR(deviation["bound"].get<double>(), 0.5, 1e-12);
+  EXPECT_NEAR(deviation["resolution"].get<double>(), 0.4, 1e-12);
 }
 
 }  // namespace

@@ -109,6 +109,37 @@ TEST_F(Recommend, GivesEveryScenesSentenceAndTheFileOfSeveral) {
   EXPECT_EQ(recommend({{folder_.string()}, "1%", "", "", "second"}).find("For second, "), 0U);
 }
 
+TEST_F(Recommend, AsksJudgementsToo) {
+  const auto point = [](const char* method, double step, double cost, double upper) {
+    return json{{"method", method},   {"time_step", step}, {"cost", cost},
+                {"error", upper / 2}, {"lower", 0},        {"upper", upper}};
+  };
+  const auto method = [](const char* name) {
+    return json{{"name", name}, {"conclusions", {{"limits", {{"findings", json::array()}}}}}};
+  };
+  json judgement = {{"format", "driftless-judgement/1"},
+                    {"examinations", json::array()},
+                    {"methods", {method("one"), method("two")}},
+                    {"trade",
+                     {{{"scene", "fluid, phi/k = 5"},
+                       {"observable", "kinetic_temperature"},
+                       {"points", {point("one", 0.1, 1, 0.004), point("two", 0.1, 2, 0.003)}}}}}};
+  const auto file = write(judgement, "judgement.json");
+  EXPECT_EQ(
+      recommend({{file}, "1%", "kinetic_temperature", "", ""}),
+      "For fluid, phi/k = 5, to have the kinetic temperature within 1 %: one at step 0.1, 1 "
+      "core-s per unit time, wrong by at most 0.4 % at 95 % confidence; next two at step 0.1, "
+      "2 times the cost; the smallest error that this study can see is 0.15 %.\n");
+  EXPECT_EQ(recommend({{folder_.string()}, "1%", "kinetic_temperature", "", ""}),
+            recommend({{file}, "1%", "kinetic_temperature", "", ""}));
+  judgement["trade"] = json::array();
+  write(judgement, "judgement.json");
+  EXPECT_EQ(refused({{file}, "1%", "", "", ""}),
+            file +
+                ": its judgement has no trade of error against cost; allowed is one with the "
+                "examination limits");
+}
+
 TEST_F(Recommend, SaysWhatIsNotResolved) {
   auto result = small_result(cells_);
   for (auto& cell : result["cells"]) {

@@ -83,8 +83,11 @@ void add_report(CLI::App& app) {
 void add_recommend(CLI::App& app) {
   const auto question = std::make_shared<Question>();
   auto* command = app.add_subcommand(
-      "recommend", "name the cheapest method and step within a tolerance, from finished results");
-  command->add_option("result", question->results, "result.json files or their folders")
+      "recommend",
+      "name the cheapest method and step within a tolerance, from finished results or judgements");
+  command
+      ->add_option("result", question->results,
+                   "result.json or judgement.json files or their folders")
       ->required();
   command->add_option("--tolerance", question->tolerance,
                       "largest error, as 0.5% or 0.005; a number for drifts and distances");
