@@ -111,6 +111,43 @@ TEST(JudgeDrift, DriftsByTheoryHoldAndOthersFail) {
   EXPECT_EQ(verdict_on("term of third order", biased), Verdict::fails);
 }
 
+TEST(JudgeDrift, APowerThatCouldBeTheNextOneIsNotResolved) {
+  const Candidate candidate{{"metropolized-splitting", {}}};
+  auto records = records_of(candidate, by_theory);
+  const auto power = [&] { return drift.conclude(candidate, {}, records).findings[1]; };
+  EXPECT_EQ(power().verdict, Verdict::holds);
+  for (auto& [name, record] : records) record["error"] = 0.15 * record["drift"].get<double>();
+  ASSERT_EQ(power().subject, "power of the step, phi/k = 60");
+  EXPECT_GT(power().resolution.value_or(0), 1);
+  EXPECT_EQ(power().verdict, Verdict::not_resolved);
+}
+
+// Where the usual steps break, the brief ones tell.
+TEST(JudgeDrift, HeatingIsSeenAtSmallSteps) {
+  const Candidate candidate{{"averaged-drift", {}}};
+  Records records;
+  for (const auto& part : drift.parts(candidate, {})) {
+    records[part.name] = {{"failures", json::array({"energy ran away"})}};
+    double step = 0;
+    std::sscanf(part.name.c_str(), "phi/k 60, friction 4.5, step %lf", &step);
+    if (step == 0 || step > 0.01) continue;
+    records[part.name].update({{"drift", 200 * step},
+                               {"error", 0.1 * step},
+                               {"walk", {1, 0, 2}},
+                               {"kick_move_kick", 1e-6},
+                               {"move_kick_move", 1e-6}});
+  }
+  for (const auto& finding : drift.conclude(candidate, {}, records).findings) {
+    if (finding.subject != "drift at small steps") continue;
+    EXPECT_EQ(
+        finding.sentence,
+        "In brief runs at step 0.0025 the energy rises by 0.5 (0.5 to 0.5) kT per particle and "
+        "unit of time, with the power 1.00 (1.00 to 1.00) of the step.");
+    return;
+  }
+  ADD_FAILURE() << "no such finding";
+}
+
 TEST(JudgeDrift, WhereEveryRunBreaksThatIsSaid) {
   const Candidate candidate{{"averaged-drift", {}}};
   Records records;
