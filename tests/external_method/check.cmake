@@ -2,7 +2,7 @@
 # it, lists it, runs a study of it, has it judged, and holds it to the suites. Then the same once more, compiled for
 # the processor at hand, and so perhaps for other instructions than the library.
 #
-# cmake -DBUILD=... -DSCRATCH=... -DCOMPILER=... -DINVARIANTS=... -DGENERATOR=... -P check.cmake
+# cmake -DBUILD=... -DSCRATCH=... -DCOMPILER=... -DGENERATOR=... -P check.cmake
 set(example ${CMAKE_CURRENT_LIST_DIR})
 set(prefix ${SCRATCH}/installed)
 set(program ${prefix}/bin/driftless)
@@ -35,11 +35,13 @@ function(compile folder flags)
   set(module ${folder}/my_euler.so PARENT_SCOPE)
 endfunction()
 
-# check_suites(MODULE): holds the method to what every method is held to.
+# check_suites(MODULE SUITE...): holds the method to what these hold every method to.
 function(check_suites module)
-  call(${CMAKE_COMMAND} -E env DRIFTLESS_METHODS=${module} ${INVARIANTS}
-    --gtest_filter=*/example_euler)
-  expect("${output}" "PASSED  . [1-9]")
+  foreach(suite ${ARGN})
+    call(${CMAKE_COMMAND} -E env DRIFTLESS_METHODS=${module} ${BUILD}/tests/${suite}_test
+      --gtest_filter=*/example_euler*)
+    expect("${output}" "PASSED  . [1-9]")
+  endforeach()
 endfunction()
 
 call(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
@@ -58,10 +60,11 @@ expect("${method} ${status}" "^example-euler ok$")
 expect("${command}" "--methods ${module}")
 expect("${instructions}" "^[A-Z]")
 
-call(${program} --methods ${module} judge example-euler -q -o ${SCRATCH}/judgement
-  --examination invariants --examination galilean)
-expect("${output}" "\n. example-euler . holds . holds .\n")
+call(${program} --methods ${module} judge example-euler -q -o ${SCRATCH}/judgement)
+# Every examination, in the order of reports. What cannot be resolved so quickly may well be elsewhere.
+set(seen "(holds|not resolved)")
+expect("${output}" "\n. example-euler . holds . holds . ${seen} . ${seen} . reported . holds . ${seen} . fails . ${seen} .\n")
 
-check_suites(${module})
+check_suites(${module} invariants long_run noise_free species storage two_body walls)
 compile(${SCRATCH}/build-native -march=native)
-check_suites(${module})
+check_suites(${module} invariants)
