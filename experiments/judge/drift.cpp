@@ -148,7 +148,7 @@ Conclusion conclude(const Candidate& candidate, const Conditions& conditions,
       power_finding(fmt::format("power of the step, phi/k = {:g}", small_capacity), "the step",
                     small, step_of, 4, theory_applies),
       power_finding("power of the friction", "the friction", along_frictions(all), friction_of, 1,
-                    theory_applies),
+                    false),
       frictionless_finding(along_frictions(all)),
       power_finding("power of the step without friction", "the step, without friction", still,
                     step_of, 4, false),
@@ -169,13 +169,14 @@ const Examination drift = {
     "drift", "Law of the energy drift",
     "How does the total energy of a soft fluid (a = 25, density 3, closure noise, no conduction) "
     "drift? For methods whose friction keeps energy and the exact law, theory says that the drift "
-    "is the Verlet step's alone: positive, of fourth order in the step, proportional to friction, "
-    "with a variance of 2 kT times the mean; its size is worked out from configurations, without "
-    "any integrator. Such methods are held to it; of the others the same numbers are reported. "
-    "Methods whose friction keeps energy but not the law are fitted with a further term of third "
-    "order in the step and first in k/phi. Brief runs of small steps measure methods that heat up "
-    "too fast for the usual ones. Where at most a quarter of a setting's runs break, the others "
-    "are what is measured.",
+    "is the Verlet step's alone: positive, of fourth order in the step, with a variance of 2 kT "
+    "times the mean, and in proportion to a weak friction; its size is worked out from "
+    "configurations, without any integrator. Such methods are held to it; of the others the same "
+    "numbers are reported, and of all the power of the friction, which is not weak here. Methods "
+    "whose friction keeps energy but not the law are fitted with a further term of third order in "
+    "the step and first in k/phi. Brief runs of small steps measure methods that heat up too fast "
+    "for the usual ones. Where at most a quarter of a setting's runs break, the others are what is "
+    "measured.",
     parts, conclude};
 
 }  // namespace driftless::judge
